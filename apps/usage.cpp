@@ -1,5 +1,8 @@
 #include "usage.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/Error.hpp>
 #include <algorithm>
 #include <iterator>
@@ -66,6 +69,23 @@ Error no_such_command(const CLI::App& app, const std::string& word) {
     return no_such(app, "command", word, meant(word, names));
 }
 
+/// Words before a command, which only it understands, as in `pliant -o out simulate`.
+std::optional<Error> out_of_order(const CLI::App& app) {
+    for (const CLI::App* above = &app;;) {
+        const auto below = above->get_subcommands();
+        if (below.empty()) return std::nullopt;
+        const std::vector<std::string> words = above->remaining();
+        if (words.empty()) {
+            above = below.front();
+            continue;
+        }
+        if (!words.front().starts_with('-')) return no_such_command(*above, words.front());
+        const std::string text = fmt::format("{}", fmt::join(words, " "));
+        return Error{Cause::input, fmt::format("{}: \"{}\" stands before the command; options follow it: {} ... {}",
+                                               full_name(*above), text, full_name(*below.front()), text)};
+    }
+}
+
 }  // namespace
 
 const CLI::App& given_command(const CLI::App& app) {
@@ -79,6 +99,7 @@ std::optional<Error> misspelt(const CLI::App& app) {
     const CLI::App& command = given_command(app);
     const std::vector<std::string> left = command.remaining();
     if (&command == &app) return left.empty() ? std::nullopt : std::optional(no_such_command(app, left.front()));
+    if (std::optional<Error> order = out_of_order(app)) return order;
     const auto found = std::find_if(left.begin(), left.end(),
                                     [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
     if (found == left.end()) return std::nullopt;

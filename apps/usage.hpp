@@ -14,8 +14,9 @@ namespace pliant::app {
 /// The command that was given, or its subcommand, as in `calibrate tensile`; without one the program itself.
 [[nodiscard]] const CLI::App& given_command(const CLI::App& app);
 
-/// After parsing has failed: the first word that is neither a command nor an option of the program, or an option that
-/// the given command does not have, with what may have been meant; empty: it is another mistake.
+/// After parsing has failed: the first word that is neither a command nor an option of the program, options that stand
+/// before the given command, or an option that it does not have, with what may have been meant; empty: it is another
+/// mistake.
 [[nodiscard]] std::optional<Error> misspelt(const CLI::App& app);
 
 /// The error of CLI11 in one line that begins with the command.

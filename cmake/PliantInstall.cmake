@@ -30,7 +30,14 @@ install(FILES ${data}/desktop/pliant-studio.desktop DESTINATION ${CMAKE_INSTALL_
 install(FILES ${data}/desktop/pliant.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps
         COMPONENT programs)
 configure_file(${data}/service/pliant-studio.service.in ${PROJECT_BINARY_DIR}/pliant-studio.service @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/pliant-studio.service DESTINATION ${PLIANT_UNIT_FOLDER} COMPONENT programs)
+# The service names the program's place, which `cmake --install --prefix` may change: it is written again there.
+install(CODE "get_filename_component(prefix \"\${CMAKE_INSTALL_PREFIX}\" ABSOLUTE)
+get_filename_component(CMAKE_INSTALL_FULL_BINDIR \"${CMAKE_INSTALL_BINDIR}\" ABSOLUTE BASE_DIR \"\${prefix}\")
+configure_file(\"${data}/service/pliant-studio.service.in\"
+               \"${PROJECT_BINARY_DIR}/installed/pliant-studio.service\" @ONLY)"
+        COMPONENT programs)
+install(FILES ${PROJECT_BINARY_DIR}/installed/pliant-studio.service DESTINATION ${PLIANT_UNIT_FOLDER}
+        COMPONENT programs)
 install(FILES ${data}/service/60-pliant-printer.rules DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant COMPONENT programs)
 
 # The folder of examples stands beside nothing that it needs; what builds and tests it stays here.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
+#include <utility>
 
 #include "base/core/config.hpp"
 #include "base/core/files.hpp"
@@ -28,15 +30,17 @@ FileKind kind_of_toml(const fs::path& file) {
                                                            "resin", "cleaning",  "carriage", "platform", "table"};
     constexpr std::array<std::string_view, 9> of_robots{"body",   "mesh",    "fixed", "cable",   "chamber",
                                                         "marker", "program", "load",  "material"};
+    constexpr std::array<std::string_view, 6> of_studies{"command", "plan", "key", "result", "samples", "slurm"};
     const Result<config::Document> document = config::load(file);
     if (!document) return FileKind::unknown;
-    int printers = 0, robots = 0;
+    std::array<std::pair<int, FileKind>, 3> kinds{{{0, FileKind::printer}, {0, FileKind::robot}, {0, FileKind::study}}};
     for (const auto& [key, value] : std::get<config::Table>(document->root.data)) {
-        printers += one_of(key, of_printers) ? 1 : 0;
-        robots += one_of(key, of_robots) ? 1 : 0;
+        kinds[0].first += one_of(key, of_printers) ? 1 : 0;
+        kinds[1].first += one_of(key, of_robots) ? 1 : 0;
+        kinds[2].first += one_of(key, of_studies) ? 1 : 0;
     }
-    if (printers == robots) return FileKind::unknown;
-    return printers > robots ? FileKind::printer : FileKind::robot;
+    std::ranges::sort(kinds, std::greater{}, [](const auto& kind) { return kind.first; });
+    return kinds[0].first > kinds[1].first ? kinds[0].second : FileKind::unknown;
 }
 
 bool is_zip(const fs::path& file) {
@@ -76,15 +80,19 @@ std::string_view geometry_name(const std::string& file) {
 /// Describes what the file is, and how to convert it to what is needed.
 std::string text_of(FileKind kind, const std::string& file, FileKind needed) {
     const std::string stem = fs::path(file).stem().string();
-    if (needed == FileKind::printer) {
-        const std::string_view what = kind == FileKind::robot ? "a robot file"
-                                      : kind == FileKind::job ? "a job"
+    const std::string_view what = kind == FileKind::robot     ? "a robot file"
+                                  : kind == FileKind::printer ? "a printer file"
+                                  : kind == FileKind::study   ? "a study file"
+                                  : kind == FileKind::job     ? "a job"
                                                               : geometry_name(file);
+    if (needed == FileKind::study) return fmt::format("{}: is {}; a study file is needed here", file, what);
+    if (needed == FileKind::printer) {
         return fmt::format("{}: is {}; a printer file is needed here, or the name of a built-in one, such as tower",
                            file, what);
     }
     if (needed == FileKind::robot) {
-        if (kind == FileKind::printer) return fmt::format("{}: is a printer file; a robot file is needed here", file);
+        if (kind == FileKind::printer || kind == FileKind::study)
+            return fmt::format("{}: is {}; a robot file is needed here", file, what);
         if (kind == FileKind::job)
             return fmt::format("{}: is a job; a robot file is needed here, such as the one that it was sliced from",
                                file);
@@ -94,6 +102,7 @@ std::string text_of(FileKind kind, const std::string& file, FileKind needed) {
     if (kind == FileKind::printer)
         return fmt::format("{}: is a printer file; a job is needed here, which pliant slice makes with --printer {}",
                            file, file);
+    if (kind == FileKind::study) return fmt::format("{}: is a study file; a job is needed here", file);
     if (kind == FileKind::robot && lower_extension(file) != ".toml")
         return fmt::format("{}: is a robot file; a job is needed here: rename it to {}.toml and slice it", file, stem);
     if (kind == FileKind::robot)

@@ -17,10 +17,10 @@
 
 namespace pliant::app {
 
-enum class FileKind { unknown, robot, printer, job, geometry };
+enum class FileKind { unknown, robot, printer, study, job, geometry };
 
-/// Recognised by content: a TOML file has keys that only robots, or only printers, have; a zip file is a job if it has
-/// a manifest. `geometry`: 3MF, STL, OBJ, PLY, STEP and mesh files, by name.
+/// Recognised by content: a TOML file has keys that only robots, only printers or only studies have; a zip file is a
+/// job if it has a manifest. `geometry`: 3MF, STL, OBJ, PLY, STEP and mesh files, by name.
 [[nodiscard]] FileKind kind_of(const std::filesystem::path& file);
 
 /// Rejects a file that is certainly of another kind.

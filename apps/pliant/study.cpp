@@ -20,6 +20,7 @@
 #include "base/core/own_core.hpp"
 #include "base/core/parse_all.hpp"
 #include "command.hpp"
+#include "inputs.hpp"
 #include "interrupt.hpp"
 #include "loop/study/folder.hpp"
 #include "loop/study/outcome.hpp"
@@ -222,6 +223,7 @@ int tell_plan(const StudyOptions& options, const study::Plan& plan, const fs::pa
 }
 
 Result<int> run_study(const StudyOptions& options) {
+    if (Status status = expect(FileKind::study, options.study); !status) return tl::unexpected(status.error());
     const std::vector<std::string> commands = commands_of_studies();
     const auto asked = study::load_study(options.study, {commands, PLIANT_VERSION});
     if (!asked) return tl::unexpected(asked.error());

@@ -49,6 +49,14 @@ struct Document {
 /// plain text. Missing tables and keys are added.
 [[nodiscard]] Status set(Document& document, std::string_view assignment);
 
+/// Where `--set` brings the value of a path: equal for all spellings of one place, such as cable.flexor and cable[0].
+struct Place {
+    const Value* value = nullptr;   ///< the last on the way that the document has
+    std::vector<std::string> rest;  ///< the parts of the path behind it
+    auto operator<=>(const Place&) const = default;
+};
+[[nodiscard]] Place place_of(const Document& document, std::string_view path);
+
 /// Evaluates `[parameters]` in order (numbers, or text "= formula" over earlier ones), removes that table, and replaces
 /// every text of the form "= formula" in the document by its value.
 [[nodiscard]] Status resolve_parameters(Document& document);

@@ -66,7 +66,8 @@ Result<Value> convert(const toml::node& node, int depth) {
     return value;
 }
 
-Value* find_child(Value& parent, std::string_view part) {
+template <class Node>  // Value or const Value
+Node* find_child(Node& parent, std::string_view part) {
     if (auto* table = std::get_if<Table>(&parent.data)) {
         for (auto& [name, value] : *table) {
             if (name == part) return &value;
@@ -75,10 +76,10 @@ Value* find_child(Value& parent, std::string_view part) {
     }
     auto* list = std::get_if<Array>(&parent.data);
     if (list == nullptr) return nullptr;
-    for (Value& item : *list) {
-        auto* entry = std::get_if<Table>(&item.data);
+    for (auto& item : *list) {
+        const auto* entry = std::get_if<Table>(&item.data);
         if (entry == nullptr) continue;
-        for (auto& [name, value] : *entry) {
+        for (const auto& [name, value] : *entry) {
             const auto* text = std::get_if<std::string>(&value.data);
             if (name == "name" && text != nullptr && *text == part) return &item;
         }
@@ -206,11 +207,12 @@ void set_lines(Value& value, int line) {
 }
 
 /// Also as messages write entries of a list: "object[0]".
-Value* find_part(Value& node, std::string_view part) {
-    if (Value* child = find_child(node, part)) return child;
+template <class Node>
+Node* find_part(Node& node, std::string_view part) {
+    if (Node* child = find_child(node, part)) return child;
     const std::size_t open = part.rfind('[');
     if (open == std::string_view::npos || !part.ends_with(']')) return nullptr;
-    Value* list = find_part(node, part.substr(0, open));
+    Node* list = find_part(node, part.substr(0, open));
     return list == nullptr ? nullptr : find_child(*list, part.substr(open + 1, part.size() - open - 2));
 }
 
@@ -282,6 +284,18 @@ Status set(Document& document, std::string_view assignment) {
     set_lines(value, node->line);
     *node = std::move(value);
     return {};
+}
+
+Place place_of(const Document& document, std::string_view path) {
+    Place place{&document.root, {}};
+    for (std::string& part : path_parts(path)) {
+        const Value* child = place.rest.empty() ? find_part(*place.value, part) : nullptr;
+        if (child == nullptr)
+            place.rest.push_back(std::move(part));
+        else
+            place.value = child;
+    }
+    return place;
 }
 
 Status resolve_parameters(Document& document) {

@@ -65,6 +65,24 @@ bool surplus(const CsvRow& row, std::size_t columns) {
                        row.cells.end(), [](const std::string& cell) { return !cell.empty(); });
 }
 
+/// Where the brackets that end a column begin; npos if it ends otherwise. The index of an entry, as in cable[0], is
+/// part of the name.
+std::size_t start_of_unit(std::string_view column) {
+    if (column.empty() || (column.back() != ')' && column.back() != ']')) return std::string_view::npos;
+    const char close = column.back(), open = close == ')' ? '(' : '[';
+    std::size_t at = column.size(), depth = 0;
+    do {
+        if (at == 0) return std::string_view::npos;
+        --at;
+        if (column[at] == close) ++depth;
+        if (column[at] == open) --depth;
+    } while (depth > 0);
+    const std::string_view inside = column.substr(at + 1, column.size() - at - 2);
+    const bool index =
+        open == '[' && at > 0 && column[at - 1] != ' ' && std::all_of(inside.begin(), inside.end(), is_digit);
+    return trimmed(inside).empty() || index ? std::string_view::npos : at;
+}
+
 }  // namespace
 
 std::string CsvTable::place(int line) const {
@@ -121,10 +139,15 @@ Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::
 }
 
 std::string_view csv_unit(std::string_view column) {
-    const std::size_t open = column.find_first_of("([");
-    const std::size_t close = column.find_last_of(")]");
-    if (open == std::string_view::npos || close == std::string_view::npos || close < open) return {};
-    return trimmed(column.substr(open + 1, close - open - 1));
+    column = trimmed(column);
+    const std::size_t open = start_of_unit(column);
+    return open == std::string_view::npos ? std::string_view{}
+                                          : trimmed(column.substr(open + 1, column.size() - open - 2));
+}
+
+std::string_view without_csv_unit(std::string_view column) {
+    column = trimmed(column);
+    return trimmed(column.substr(0, start_of_unit(column)));
 }
 
 std::string csv_field(std::string_view text) {

@@ -36,6 +36,8 @@ struct CsvTable {
 
 /// The text in brackets at the end of a column name: "MPa" for "stress (MPa)"; "" if there is none.
 [[nodiscard]] std::string_view csv_unit(std::string_view column);
+/// The column name without these brackets: "stress".
+[[nodiscard]] std::string_view without_csv_unit(std::string_view column);
 
 /// A field, quoted if it contains a comma, a quote or a line break. A leading =, +, -, @ is prefixed with an
 /// apostrophe, so that no spreadsheet takes a name for a formula.

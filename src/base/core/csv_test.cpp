@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+
 using namespace pliant;
 
 namespace {
@@ -26,6 +28,19 @@ TEST_CASE("separators, quotes, comments and the lines that messages name") {
     CHECK(csv_unit("force [N]") == "N");
     CHECK(csv_unit("force )N(").empty());
     CHECK(csv_unit("force").empty());
+    for (const auto& [column, name, unit] : {std::array<const char*, 3>{"cable[0].target.length_ratio", "", ""},
+                                             {"object[0]", "", ""},
+                                             {"object[0].mass (g)", "object[0].mass", "g"},
+                                             {"softness ( MPa ) ", "softness", "MPa"},
+                                             {"force[N]", "force", "N"},
+                                             {"strain [%]", "strain", "%"},
+                                             {"a (b) c", "", ""},
+                                             {"f(x) (N/(mm s))", "f(x)", "N/(mm s)"},
+                                             {"force ()", "", ""}}) {
+        CAPTURE(column);
+        CHECK(without_csv_unit(column) == (*name == '\0' ? column : name));
+        CHECK(csv_unit(column) == unit);
+    }
     const auto quoted = parse_csv("\"tip, or \"\"end\"\"_x_mm\",y\n1,\"2\"\n\"3,4\n", "a.csv", "");
     CHECK(quoted->columns == std::vector<std::string>{"tip, or \"end\"_x_mm", "y"});
     CHECK(quoted->number(quoted->rows[0], 1, "y").value() == 2);

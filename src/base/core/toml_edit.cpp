@@ -4,7 +4,12 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 #include "base/core/config_text.hpp"
 #include "base/core/letters.hpp"
@@ -109,16 +114,33 @@ toml::node* entry_named(toml::array& list, std::string_view name) {
     return nullptr;
 }
 
-/// Appends a header for a table that does not exist yet.
-std::string with_new_table(std::string_view text, const std::vector<std::string>& parts, std::string_view value) {
+std::string header_of(std::span<const std::string> names) {
     std::string header;
-    for (std::size_t k = 0; k + 1 < parts.size(); ++k) {
-        if (k > 0) header += '.';
-        header += key_text(parts[k]);
-    }
+    for (const std::string& name : names) header += (header.empty() ? "" : ".") + key_text(name);
+    return "[" + header + "]";
+}
+
+std::size_t place_in(const toml::array& list, const toml::node& item) {
+    std::size_t place = 0;
+    while (list.get(place) != &item) ++place;
+    return place;
+}
+
+/// Appends a header for a table that does not exist yet.
+std::string with_new_table(std::string_view text, std::span<const std::string> parts, std::string_view value) {
     std::string out(text);
     if (!out.empty() && out.back() != '\n') out += '\n';
-    return out + fmt::format("\n[{}]\n{} = {}\n", header, key_text(parts.back()), value);
+    return out +
+           fmt::format("\n{}\n{} = {}\n", header_of(parts.first(parts.size() - 1)), key_text(parts.back()), value);
+}
+
+/// Whether the table exists only by the header of a table in it, as program does by [[program.key]]: it then begins
+/// where that one does, and what follows belongs to that one.
+bool has_no_header(const toml::table& table) {
+    return std::any_of(table.begin(), table.end(), [&](const auto& entry) {
+        const toml::node& value = entry.second;
+        return (value.is_table() || value.is_array()) && value.source().begin == table.source().begin;
+    });
 }
 
 Status is_value(std::string_view value) {
@@ -127,32 +149,75 @@ Status is_value(std::string_view value) {
     return input_error("\"{}\" is not a TOML value", value);
 }
 
-/// An edit must leave valid TOML.
-Result<std::string> checked(std::string text) {
-    if (auto again = parsed(text); !again) return tl::unexpected(again.error());
+/// The way to a value: keys of tables, and places in lists.
+using Way = std::vector<std::variant<std::string, std::size_t>>;
+
+const toml::node* node_at(const toml::node& root, const Way& way) {
+    const toml::node* at = &root;
+    for (const auto& step : way) {
+        const auto* key = std::get_if<std::string>(&step);
+        const toml::table* table = at->as_table();
+        const toml::array* list = at->as_array();
+        if (key != nullptr)
+            at = table == nullptr ? nullptr : table->get(*key);
+        else
+            at = list == nullptr ? nullptr : list->get(std::get<std::size_t>(step));
+        if (at == nullptr) return nullptr;
+    }
+    return at;
+}
+
+bool is_equal(const toml::node& one, const toml::node& other) {
+    return one.visit([&](const auto& a) {
+        const auto* b = other.as<std::remove_cvref_t<decltype(a)>>();
+        return b != nullptr && a == *b;
+    });
+}
+
+/// A value, and where an edit was to bring it.
+struct Aim {
+    Way way;
+    std::string_view value;
+};
+
+/// An edit must leave valid TOML in which the values are where they were meant to be.
+Result<std::string> checked(std::string text, std::span<const Aim> aims) {
+    const auto again = parsed(text);
+    if (!again) return tl::unexpected(again.error());
+    for (const auto& [way, value] : aims) {
+        const auto alone = parsed(fmt::format("v = {}\n", value));
+        if (!alone) return tl::unexpected(alone.error());
+        const toml::node* there = node_at(*again, way);
+        if (there == nullptr || !is_equal(*there, *alone->get("v")))
+            return input_error("the text cannot be edited here: the value would get to another place");
+    }
     return text;
 }
 
-}  // namespace
-
-Result<std::string> with_value(std::string_view text, std::string_view path, std::string_view value) {
+Result<std::string> edited(std::string_view text, std::string_view path, std::string_view value) {
     if (Status status = is_value(value); !status) return tl::unexpected(status.error());
     Result<toml::table> root = parsed(text);
     if (!root) return tl::unexpected(root.error());
     const std::vector<std::string> parts = path_parts(path);
     toml::node* at = &*root;
-    std::string dotted;  // from the table's header to the table, as of target in `target.tension = "5 N"`
+    Way way;
+    const auto finished = [&](std::string out) { return checked(std::move(out), std::array{Aim{way, value}}); };
+    std::vector<std::string> names;  // of the tables and lists on the way, as headers have them
+    std::string dotted;              // from the table's header to the table, as of target in `target.tension = "5 N"`
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (toml::array* list = at->as_array()) {
             at = entry_named(*list, parts[k]);
             if (at == nullptr) return input_error("{}: there is no \"{}\"", path, parts[k]);
+            way.emplace_back(place_in(*list, *at));
             continue;
         }
         toml::table* table = at->as_table();
         if (table == nullptr) return input_error("{}: \"{}\" is not a table", path, parts[k - 1]);
         toml::node* next = table->get(parts[k]);
+        way.emplace_back(parts[k]);
         if (next != nullptr) {
             at = next;
+            names.push_back(parts[k]);
             const bool table_of_keys = at->is_table() && !at->as_table()->is_inline() &&
                                        !text.substr(offset_of(text, at->source().begin)).starts_with('[');
             dotted = table_of_keys ? dotted + key_text(parts[k]) + "." : "";
@@ -160,24 +225,29 @@ Result<std::string> with_value(std::string_view text, std::string_view path, std
         }
         if (k + 1 < parts.size()) {
             if (at != &*root) return input_error("{}: there is no \"{}\"", path, parts[k]);
-            return checked(with_new_table(text, parts, value));
+            way.insert(way.end(), parts.begin() + 1, parts.end());
+            return finished(with_new_table(text, parts, value));
         }
         const std::string line = fmt::format("{} = {}", key_text(parts[k]), value);
-        if (table->is_inline()) return checked(insert_at_end(text, *table, line));
-        // The top level has no header that tells where it begins.
-        const std::size_t after = at == &*root && table->source().begin.line <= 1 ? 0 : table->source().begin.line;
-        return checked(
-            insert_line(text, std::max(after, at == &*root ? std::size_t{0} : last_own_line(*table)), dotted + line));
+        if (table->is_inline()) return finished(insert_at_end(text, *table, line));
+        if (at == &*root) {  // the top level has no header that tells where it begins
+            const std::size_t begin = table->source().begin.line;
+            return finished(insert_line(text, begin <= 1 ? 0 : begin, line));
+        }
+        if (dotted.empty() && has_no_header(*table))
+            return finished(insert_line(text, table->source().begin.line - 1, header_of(names) + "\n" + line + "\n"));
+        const std::size_t after = std::max<std::size_t>(table->source().begin.line, last_own_line(*table));
+        return finished(insert_line(text, after, dotted + line));
     }
     if (at->is_table() && !at->as_table()->is_inline()) return input_error("{} is a table", path);
     const toml::array* list = at->as_array();
     if (list != nullptr && at->is_array_of_tables() && !list->get(0)->as_table()->is_inline())
         return input_error("{} is a list of tables", path);
     const std::size_t begin = offset_of(text, at->source().begin), end = offset_of(text, at->source().end);
-    return checked(std::string(text.substr(0, begin)) + std::string(value) + std::string(text.substr(end)));
+    return finished(std::string(text.substr(0, begin)) + std::string(value) + std::string(text.substr(end)));
 }
 
-Result<std::string> with_entry(std::string_view text, std::string_view list, const EntryText& entry) {
+Result<std::string> extended(std::string_view text, std::string_view list, const EntryText& entry) {
     Result<toml::table> root = parsed(text);
     if (!root) return tl::unexpected(root.error());
     std::string lines = fmt::format("\n[[{}]]", key_text(list)), inlined;
@@ -187,17 +257,39 @@ Result<std::string> with_entry(std::string_view text, std::string_view list, con
         inlined += fmt::format("{}{} = {}", inlined.empty() ? "" : ", ", key_text(key), value);
     }
     const toml::node* there = root->get(list);
+    const toml::array* all = there == nullptr ? nullptr : there->as_array();
+    std::vector<Aim> aims;
+    for (const auto& [key, value] : entry)
+        aims.push_back({{std::string(list), all == nullptr ? std::size_t{0} : all->size(), key}, value});
     if (there == nullptr) {
         std::string out(text);
         if (!out.empty() && out.back() != '\n') out += '\n';
-        return checked(out + lines + "\n");
+        return checked(out + lines + "\n", aims);
     }
-    const toml::array* all = there->as_array();
     if (all == nullptr) return input_error("{} is not a list", list);
     const toml::table* first = all->empty() ? nullptr : all->get(0)->as_table();
     const bool headed = first != nullptr && !first->is_inline();
-    if (headed) return checked(insert_line(text, last_line(*all), lines));
-    return checked(insert_at_end(text, *all, "{ " + inlined + " }"));
+    if (headed) return checked(insert_line(text, last_line(*all), lines), aims);
+    return checked(insert_at_end(text, *all, "{ " + inlined + " }"), aims);
+}
+
+/// Edits the text behind a byte order mark, which is no column of the first line.
+template <class Edit>
+Result<std::string> behind_mark(std::string_view text, const Edit& edit) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    if (!text.starts_with(mark)) return edit(text);
+    text.remove_prefix(mark.size());
+    return edit(text).map([&](const std::string& out) { return std::string(mark) + out; });
+}
+
+}  // namespace
+
+Result<std::string> with_value(std::string_view text, std::string_view path, std::string_view value) {
+    return behind_mark(text, [&](std::string_view rest) { return edited(rest, path, value); });
+}
+
+Result<std::string> with_entry(std::string_view text, std::string_view list, const EntryText& entry) {
+    return behind_mark(text, [&](std::string_view rest) { return extended(rest, list, entry); });
 }
 
 }  // namespace pliant::config

@@ -103,6 +103,25 @@ TEST_CASE("a key beside one that is written with dots is written with dots too")
     CHECK(with_value("[m.soft]\na = 1\n", "m.soft.b", "2").value() == "[m.soft]\na = 1\nb = 2\n");
 }
 
+TEST_CASE("a table that has no header of its own gets one") {
+    CHECK(with_value("a = 1\n\n[[program.key]]\ntime = 1\n", "program.steps", "3").value() ==
+          "a = 1\n\n[program]\nsteps = 3\n\n[[program.key]]\ntime = 1\n");
+    CHECK(with_value("[a.b.c]\nd = 1\n[e]\nf = 1\n", "a.b.g", "2").value() ==
+          "[a.b]\ng = 2\n\n[a.b.c]\nd = 1\n[e]\nf = 1\n");
+    CHECK(with_value("[[body]]\nname = \"b\"\n[body.\"v 1.2\".c]\nd = 1\n", "body.b.\"v 1.2\".e", "2").value() ==
+          "[[body]]\nname = \"b\"\n[body.\"v 1.2\"]\ne = 2\n\n[body.\"v 1.2\".c]\nd = 1\n");
+    CHECK(with_value("[a.b]\nc = 1\n[a]\nd = 1\n", "a.e", "2").value() == "[a.b]\nc = 1\n[a]\nd = 1\ne = 2\n");
+    const std::string renamed = with_value(robot, "cable.other.name", "\"third\"").value();
+    CHECK(renamed == replaced(robot, "\"other\"", "\"third\""));
+}
+
+TEST_CASE("a byte order mark stays where it is and is no column") {
+    const std::string mark = "\xEF\xBB\xBF";
+    CHECK(with_value(mark + "program.steps =50\n", "program.steps", "7").value() == mark + "program.steps =7\n");
+    CHECK(with_value(mark + "[a]\nb = 1\n", "c", "2").value() == mark + "c = 2\n[a]\nb = 1\n");
+    CHECK(with_entry(mark + "m = []\n", "m", {{"a", "1"}}).value() == mark + "m = [ { a = 1 }]\n");
+}
+
 TEST_CASE("names with dots are parts of a path in quotes") {
     const std::string text =
         "[material.\"ecoflex 00.30\"]\ndensity = 1\n\n[[body]]\nname = \"finger v1.2\"\nmaterial = \"a\"\n";

@@ -70,7 +70,16 @@ inline std::array<double, 4> nearest_weights(const std::array<Vec3, 4>& c, const
             moved[i] = p;
             w[i] = signed_tet_volume(moved[0], moved[1], moved[2], moved[3]) / volume;
         }
-        if (std::all_of(w.begin(), w.end(), [](double x) { return x >= 0; })) return w;
+        const double sum = w[0] + w[1] + w[2] + w[3];
+        if (std::all_of(w.begin(), w.end(), [](double x) { return x >= 0; }) && sum > 0.5 && sum < 2) {
+            constexpr double usual_rounding = 1e-12;
+            const bool spoilt = sum < 1 - usual_rounding || sum > 1 + usual_rounding;
+            for (double& weight : w) weight /= sum;
+            if (!spoilt) return w;
+            // In a tet so thin that rounding counts, a face may be nearer than the point of these weights.
+            const auto on_face = nearest_on_faces(c, p);
+            return norm(weighted(c, w) - p) <= norm(weighted(c, on_face) - p) ? w : on_face;
+        }
     }
     return nearest_on_faces(c, p);
 }

@@ -35,34 +35,55 @@ TetLocator::TetLocator(const TetMesh& mesh) : mesh_(&mesh), curved_(mesh.tet_cou
     const Vec3 size = box_.size();
     // About two tets per cell: short lists, and a grid no larger than the mesh.
     const double volume = std::max(size.x * size.y * size.z, 1e-300);
-    cell_size_ = std::max(std::cbrt(2 * volume / static_cast<double>(std::max<std::size_t>(mesh.tet_count(), 1))),
-                          1e-9 * box_.diagonal());
-    if (!(cell_size_ > 0)) cell_size_ = 1;
-    for (std::size_t a = 0; a < 3; ++a) cells_[a] = std::clamp(static_cast<int>(size[a] / cell_size_) + 1, 1, 512);
-    cell_size_ = std::max({size.x / cells_[0], size.y / cells_[1], size.z / cells_[2], cell_size_});
+    double wanted = std::max(std::cbrt(2 * volume / static_cast<double>(std::max<std::size_t>(mesh.tet_count(), 1))),
+                             1e-9 * box_.diagonal());
+    if (!(wanted > 0)) wanted = 1;
+    choose_cells(wanted);
+    // Long tets across the mesh have boxes of many cells: their number times that of the cells.
+    constexpr std::size_t most_per_tet = 64;
+    while (cell_count() > 1 && entries() > most_per_tet * mesh.tet_count()) choose_cells(wanted *= 2);
 
     const auto visit = [&](std::size_t t, const auto& act) {
-        const Box3 box = bounds_of(t);
-        const auto low = cell_of(box.low);
-        const auto high = cell_of(box.high);
+        const auto [low, high] = cells_of(t);
         for (int i = low[0]; i <= high[0]; ++i) {
             for (int j = low[1]; j <= high[1]; ++j) {
                 for (int k = low[2]; k <= high[2]; ++k) act(cell_index(i, j, k));
             }
         }
     };
-    start_.assign(cell_index(cells_[0] - 1, cells_[1] - 1, cells_[2] - 1) + 2, 0);
+    start_.assign(cell_count() + 1, 0);
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) visit(t, [&](std::size_t cell) { ++start_[cell + 1]; });
     for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
-    tets_.resize(static_cast<std::size_t>(start_.back()));
-    std::vector<int> next(start_.begin(), start_.end() - 1);
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        visit(t, [&](std::size_t cell) { tets_[static_cast<std::size_t>(next[cell]++)] = static_cast<int>(t); });
-    }
+    tets_.resize(start_.back());
+    std::vector<std::size_t> next(start_.begin(), start_.end() - 1);
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t)
+        visit(t, [&](std::size_t cell) { tets_[next[cell]++] = static_cast<int>(t); });
 }
 
-std::array<int, 3> TetLocator::cell_of(const Vec3& point) const {
-    std::array<int, 3> cell{};
+void TetLocator::choose_cells(double wanted) {
+    const Vec3 size = box_.size();
+    for (std::size_t a = 0; a < 3; ++a) cells_[a] = static_cast<int>(std::clamp(size[a] / wanted + 1, 1.0, 512.0));
+    cell_size_ = std::max({size.x / cells_[0], size.y / cells_[1], size.z / cells_[2], wanted});
+}
+
+std::size_t TetLocator::entries() const {
+    std::size_t sum = 0;
+    for (std::size_t t = 0; t < mesh_->tet_count(); ++t) {
+        const auto [low, high] = cells_of(t);
+        std::size_t cells = 1;
+        for (std::size_t a = 0; a < 3; ++a) cells *= static_cast<std::size_t>(high[a] - low[a] + 1);
+        sum += cells;
+    }
+    return sum;
+}
+
+std::pair<TetLocator::Cell, TetLocator::Cell> TetLocator::cells_of(std::size_t tet) const {
+    const Box3 box = bounds_of(tet);
+    return {cell_of(box.low), cell_of(box.high)};
+}
+
+TetLocator::Cell TetLocator::cell_of(const Vec3& point) const {
+    Cell cell{};
     for (std::size_t a = 0; a < 3; ++a) {
         const double at = (point[a] - box_.low[a]) / cell_size_;
         cell[a] = at >= 0 ? static_cast<int>(std::min(at, cells_[a] - 1.0)) : 0;
@@ -115,8 +136,7 @@ TetLocator::Location TetLocator::locate(const Vec3& point) const {
                         std::max({std::abs(i - home[0]), std::abs(j - home[1]), std::abs(k - home[2])}) == ring;
                     if (!on_ring) continue;
                     const std::size_t cell = cell_index(i, j, k);
-                    for (int n = start_[cell]; n < start_[cell + 1]; ++n)
-                        try_tet(tets_[static_cast<std::size_t>(n)], point, best);
+                    for (std::size_t n = start_[cell]; n < start_[cell + 1]; ++n) try_tet(tets_[n], point, best);
                 }
             }
         }

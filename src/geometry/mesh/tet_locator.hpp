@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "geometry/mesh/tet_mesh.hpp"
@@ -24,7 +25,14 @@ public:
     [[nodiscard]] Location locate(const Vec3& point) const;
 
 private:
-    [[nodiscard]] std::array<int, 3> cell_of(const Vec3& point) const;
+    using Cell = std::array<int, 3>;
+    void choose_cells(double wanted);
+    /// How many cells the boxes of the tets meet, each tet's counted.
+    [[nodiscard]] std::size_t entries() const;
+    /// The first and last cell that the tet's box meets.
+    [[nodiscard]] std::pair<Cell, Cell> cells_of(std::size_t tet) const;
+    [[nodiscard]] Cell cell_of(const Vec3& point) const;
+    [[nodiscard]] std::size_t cell_count() const { return cell_index(cells_[0] - 1, cells_[1] - 1, cells_[2] - 1) + 1; }
     [[nodiscard]] std::size_t cell_index(int i, int j, int k) const {
         return (static_cast<std::size_t>(i) * static_cast<std::size_t>(cells_[1]) + static_cast<std::size_t>(j)) *
                    static_cast<std::size_t>(cells_[2]) +
@@ -36,9 +44,9 @@ private:
     const TetMesh* mesh_;
     std::vector<bool> curved_;  ///< (tets)
     Box3 box_;
-    std::array<int, 3> cells_ = {1, 1, 1};
+    Cell cells_ = {1, 1, 1};
     double cell_size_ = 1;
-    std::vector<int> start_;  ///< (cells + 1)
+    std::vector<std::size_t> start_;  ///< (cells + 1)
     std::vector<int> tets_;
 };
 

@@ -163,16 +163,29 @@ std::optional<OverlappingTets> overlapping_tets(const TetMesh& mesh) {
     std::optional<OverlappingTets> lowest;
     const auto order = [](const OverlappingTets& pair) { return std::tuple(!pair.same, pair.first, pair.second); };
     const auto all = [](std::size_t) { return true; };
+    const auto take = [&](const Listed& one, const Listed& other, bool same) {
+        const OverlappingTets pair{static_cast<int>(one.face / 4), static_cast<int>(other.face / 4), same};
+        const std::lock_guard lock(mutex);
+        if (!lowest || order(pair) < order(*lowest)) lowest = pair;
+    };
     for_each_group(mesh, all, [&](std::span<const Listed> list) {
-        for (std::size_t k = 1; k < list.size(); ++k) {
-            for (std::size_t m = k; m-- > 0 && list[k].is_on_same(list[m]);) {
-                if (ascends(mesh, list[k].face) != ascends(mesh, list[m].face)) continue;
-                const std::size_t first = list[m].face / 4, second = list[k].face / 4;
-                const auto a = mesh.tet(first).first(4), b = mesh.tet(second).first(4);
-                const OverlappingTets pair{static_cast<int>(first), static_cast<int>(second),
-                                           std::is_permutation(a.begin(), a.end(), b.begin())};
-                const std::lock_guard lock(mutex);
-                if (!lowest || order(pair) < order(*lowest)) lowest = pair;
+        std::vector<Listed> side;
+        const auto apex = [&](const Listed& l) { return mesh.tet(l.face / 4)[l.face % 4]; };
+        for (std::size_t begin = 0, end = 0; begin < list.size(); begin = end) {
+            while (end < list.size() && list[end].is_on_same(list[begin])) ++end;
+            for (const bool up : {false, true}) {
+                side.clear();
+                for (std::size_t k = begin; k < end; ++k)
+                    if (ascends(mesh, list[k].face) == up) side.push_back(list[k]);
+                if (side.size() < 2) continue;
+                // Only the lowest pairs: a file may repeat a tet any number of times.
+                take(side[0], side[1], apex(side[0]) == apex(side[1]));
+                std::stable_sort(side.begin(), side.end(),
+                                 [&](const Listed& a, const Listed& b) { return apex(a) < apex(b); });
+                for (std::size_t k = 1; k < side.size(); ++k) {
+                    const bool second = k < 2 || apex(side[k - 2]) != apex(side[k]);
+                    if (second && apex(side[k - 1]) == apex(side[k])) take(side[k - 1], side[k], true);
+                }
             }
         }
     });

@@ -56,6 +56,23 @@ TEST_CASE("tets that overlap are found by the face that they share") {
     }
 }
 
+TEST_CASE("of many tets on one side of a face the lowest same pair is told") {
+    TetMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    for (int apex = 3; apex < 9; ++apex) {
+        mesh.points.push_back({0.1 * apex, 0.1, 1.0});
+        mesh.nodes.insert(mesh.nodes.end(), {0, 1, 2, apex});
+        mesh.region.push_back(0);
+    }
+    mesh.region_names = {"all"};
+    CHECK(overlap_text(overlapping_tets(mesh).value()).starts_with("tetrahedra 0 and 1 overlap"));
+    for (int copy = 0; copy < 20000; ++copy) {  // too many to compare each with each
+        mesh.nodes.insert(mesh.nodes.end(), {1, 2, 0, copy % 2 == 0 ? 7 : 5});
+        mesh.region.push_back(0);
+    }
+    CHECK(overlap_text(overlapping_tets(mesh).value()) == "tetrahedra 2 and 7 are the same");
+}
+
 TEST_CASE("the surface of one region is closed") {
     CHECK(signed_volume(region_surface(two_tets(), 1)) == near(1.0 / 3, {.relative = 1e-12}));
     CHECK(signed_volume(region_surface(to_quadratic(two_tets()), 0)) == near(1.0 / 6, {.relative = 1e-12}));

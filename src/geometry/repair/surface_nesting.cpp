@@ -152,7 +152,19 @@ private:
         return *shell.tree;
     }
     bool cross(std::size_t a, std::size_t b) {
+        // Shells one inside the other, as cubes in cubes, are often far from each other's triangles.
+        if (!comes_near(shells_[a], shells_[b].box) || !comes_near(shells_[b], shells_[a].box)) return false;
         return edges_meet(shells_[a], tree(b), shells_[b].box) || edges_meet(shells_[b], tree(a), shells_[a].box);
+    }
+    /// Whether the box of a triangle comes near another shell's box; else nothing of that one can touch the shell.
+    bool comes_near(const NestedShell& shell, const Box3& box) const {
+        const double near = 1e-6 * (shell.box.diagonal() + box.diagonal());  // much more than `touching`
+        return std::any_of(shell.triangles.begin(), shell.triangles.end(), [&](std::size_t t) {
+            Box3 around;
+            for (const int corner : surface_.triangles[t])
+                around.add(surface_.points[static_cast<std::size_t>(corner)]);
+            return boxes_meet(around, box, near);
+        });
     }
     /// Whether an edge of a shell meets another one's triangles; touching counts.
     bool edges_meet(const NestedShell& shell, const TriangleTree& other, const Box3& box) const {

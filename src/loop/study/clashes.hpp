@@ -13,8 +13,8 @@ struct Clash {
     std::string message;  ///< what it clashes with, and what would be right
 };
 
-/// Columns of results.csv that two keys or results would share, and keys that set the same thing: of these only one
-/// value would count.
+/// Columns of results.csv that two keys or results would share, and keys that set the same thing, however they write
+/// it: of these only one value would count. The .toml files of the command tell which spellings mean the same.
 [[nodiscard]] std::vector<Clash> clashes(const Plan& plan);
 
 }  // namespace pliant::study

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
+
 using namespace pliant::study;
 
 namespace {
@@ -40,4 +43,26 @@ TEST_CASE("keys that set the same thing clash") {
     CHECK(found({{"a", "", "--layer", "um"}, {"b", "", "--layer", ""}}, {}).size() == 1);
     CHECK(
         found({{"a", "", "", ""}, {"b", "", "", ""}, {"c", "--layer", "", ""}, {"d", "", "--layer", ""}}, {}).empty());
+}
+
+TEST_CASE("keys that set the same thing clash however they write it") {
+    CHECK(found({{"a", "body.soft.size", "", "mm"}, {"b", "body.\"soft\".size", "", "mm"}}, {}).size() == 1);
+    const pliant::test::Folder folder("clashes");
+    REQUIRE(pliant::write_file(folder / "finger.toml",
+                               "[[cable]]\nname = \"flexor\"\n[[cable]]\nname = \"extensor\"\n[[object]]\nmass = 1\n"));
+    const auto clash = [&](const std::string& one, const std::string& other) {
+        Plan plan;
+        plan.folder = folder.path();
+        plan.command = {"simulate", "finger.toml"};
+        plan.keys = {{"a", one, "", ""}, {"b", other, "", ""}};
+        const auto all = clashes(plan);
+        return all.empty() ? "" : all[0].message;
+    };
+    CHECK(clash("cable.flexor.friction", "cable[0].friction") ==
+          "sets \"cable[0].friction\", as key.a does; only one of them may");
+    CHECK(clash("cable.0.friction", "cable.'flexor'.friction") != "");
+    CHECK(clash("object.0.mass", "object[0].mass") != "");
+    CHECK(clash("cable.1.friction", "cable.flexor.friction") == "");
+    CHECK(clash("cable.flexor.friction", "cable.flexor.target.tension") == "");
+    CHECK(clash("cable.flexor.target.tension", "cable[0].target.tension") != "");
 }

@@ -58,20 +58,21 @@ std::string npy_truths(const std::vector<bool>& truths) {
     return bytes;
 }
 
-std::string npy_texts(std::span<const std::string> texts) {
+std::string npy_texts(std::span<const std::string> texts, std::size_t most_letters) {
     std::vector<std::u32string> letters;
     std::size_t longest = 1;
     for (std::string_view text : texts) {
         std::u32string& word = letters.emplace_back();
-        while (!text.empty()) word += take_letter(text);
+        while (!text.empty() && word.size() < most_letters) word += take_letter(text);
         longest = std::max(longest, word.size());
     }
     std::string bytes = header(fmt::format("<U{}", longest), texts.size());
-    for (std::u32string& word : letters) {
-        word.resize(longest, 0);
+    bytes.reserve(bytes.size() + 4 * longest * texts.size());
+    for (const std::u32string& word : letters) {
         for (const char32_t letter : word) {
             for (unsigned k = 0; k < 4; ++k) bytes += static_cast<char>(letter >> (8 * k) & 0xffU);
         }
+        bytes.append(4 * (longest - word.size()), '\0');
     }
     return bytes;
 }

@@ -141,7 +141,8 @@ Status write_npz(const Plan& plan, const fs::path& path, const Collected& rows) 
         reasons.push_back(row ? row->reason : "");
     }
     add("done", npy_truths(done));
-    add("reason", npy_texts(reasons));
+    constexpr std::size_t most_letters = 200;  // the whole reasons are in results.csv
+    add("reason", npy_texts(reasons, most_letters));
     return status ? zip->close() : status;
 }
 
@@ -232,11 +233,11 @@ std::string summary_json(const Plan& plan, const Collected& rows, const std::vec
 Status write_outcome(const Plan& plan, const fs::path& folder, const Collected& rows,
                      const std::vector<ResultFigures>& figures, const std::string& summary) {
     Status status = write_file(folder / "results.csv", results_csv(plan, rows));
-    if (status) status = write_npz(plan, folder / "results.npz", rows);
     if (status) status = write_file(folder / "times.csv", times_csv(rows));
     if (status && plan.design == Design::sensitivity)
         status = write_file(folder / "sensitivity.csv", sensitivity_csv(plan, figures));
     if (status) status = write_file(folder / "summary.json", summary);
+    if (status) status = write_npz(plan, folder / "results.npz", rows);  // last: by far the largest
     return status;
 }
 

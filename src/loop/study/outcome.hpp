@@ -35,7 +35,7 @@ struct ResultFigures {
 [[nodiscard]] std::string summary_json(const Plan& plan, const Collected& rows,
                                        const std::vector<ResultFigures>& figures, const RunAccount* account);
 
-/// Writes results.csv, results.npz, times.csv, summary.json and, for a sensitivity study, sensitivity.csv, each
+/// Writes results.csv, times.csv, for a sensitivity study sensitivity.csv, summary.json and results.npz, each
 /// atomically.
 [[nodiscard]] Status write_outcome(const Plan& plan, const std::filesystem::path& folder, const Collected& rows,
                                    const std::vector<ResultFigures>& figures, const std::string& summary);

@@ -75,6 +75,9 @@ TEST_CASE("arrays have the bytes that numpy writes") {
     const std::string texts = npy_texts(std::vector<std::string>{"aé", "\xff"});
     CHECK(texts.find("'<U2'") != std::string::npos);
     CHECK(texts.substr(texts.size() - 16) == std::string("a\0\0\0\xe9\0\0\0\xfd\xff\0\0\0\0\0\0", 16));
+    const std::string cut = npy_texts(std::vector<std::string>{"éé", "abcde"}, 3);
+    CHECK(cut.find("'<U3'") != std::string::npos);
+    CHECK(cut.substr(cut.size() - 24) == std::string("\xe9\0\0\0\xe9\0\0\0\0\0\0\0a\0\0\0b\0\0\0c\0\0\0", 24));
     CHECK(npy_truths({true, false}).ends_with(std::string("\1\0", 2)));
 }
 

@@ -9,6 +9,7 @@
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
 #include "loop/study/clashes.hpp"
+#include "loop/study/command_files.hpp"
 #include "loop/study/design.hpp"
 #include "loop/study/json_path.hpp"
 #include "loop/study/sobol.hpp"
@@ -33,14 +34,16 @@ bool mentions(const std::vector<std::string>& words, const std::string& what) {
 /// Every row would write over what the one before has written.
 void check_output(Reader& root, const std::vector<std::string>& words) {
     for (std::size_t k = 1; k < words.size(); ++k) {
-        const bool apart = words[k] == "-o" || words[k] == "--output", joined = words[k].starts_with("--output=");
-        if (!apart && !joined) continue;
-        const std::string value = joined ? words[k] : k + 1 < words.size() ? words[k + 1] : "";
+        const std::string& word = words[k];
+        const bool apart = word == "-o" || word == "--output", is_short = word.starts_with("-o");
+        if (!apart && !is_short && !word.starts_with("--output=")) continue;
+        const std::string value = !apart                 ? word.substr(is_short ? 2 : word.find('=') + 1)
+                                  : k + 1 < words.size() ? words[k + 1]
+                                                         : "";
         if (value.empty() || value.find('{') != std::string::npos) continue;
-        root.problem("command",
-                     fmt::format("all rows would write \"{}\", one over the other; {{row}} in it stands for "
-                                 "a folder of the row's own, as in \"{}\", \"{{row}}/out\"",
-                                 joined ? value.substr(value.find('=') + 1) : value, apart ? words[k] : "--output"));
+        root.problem("command", fmt::format("all rows would write \"{}\", one over the other; {{row}} in it stands for "
+                                            "a folder of the row's own, as in \"{}\", \"{{row}}/out\"",
+                                            value, is_short ? "-o" : "--output"));
     }
 }
 
@@ -190,18 +193,9 @@ std::vector<std::vector<std::string>> sampled_rows(const Draft& draft, Reader& r
     return rows_of(sobol_points(draft.samples, count, draft.seed), draft.keys);
 }
 
-/// The name of a column, without the unit in brackets.
-std::string_view bare(std::string_view column) {
-    const std::string_view unit = csv_unit(column);
-    if (unit.empty()) return column;
-    column.remove_suffix(unit.size() + 2);
-    while (column.ends_with(' ')) column.remove_suffix(1);
-    return column;
-}
-
 /// The key of each column: one of the study file by name, or else a key of the file that the command reads.
 Result<Key> key_of_column(const std::string& column, const Draft& draft, const std::string& place) {
-    const std::string name(bare(column)), unit(csv_unit(column));
+    const std::string name(without_csv_unit(column)), unit(csv_unit(column));
     if (name.empty()) return input_error("{}: a column has no name", place);
     const auto known =
         std::find_if(draft.keys.begin(), draft.keys.end(), [&](const KeyChoice& k) { return k.key.name == name; });
@@ -300,27 +294,6 @@ Draft read_draft(Reader& root, const StudyContext& context, const fs::path& file
     plan.rows_per_chunk = rows_per_task;
     root.finish();
     return draft;
-}
-
-/// The files that a word of the command names: FILE, --x=FILE or NAME=FILE, and the robot that such a file stands on.
-std::vector<fs::path> files_of(const std::string& word, const fs::path& folder) {
-    std::vector<fs::path> files{folder / word};
-    if (const std::size_t sign = word.find('='); sign != std::string::npos)
-        files.push_back(folder / word.substr(sign + 1));
-    std::erase_if(files, [](const fs::path& file) {
-        std::error_code error;
-        return !fs::is_regular_file(file, error);
-    });
-    for (std::size_t k = 0, count = files.size(); k < count; ++k) {
-        if (lower_extension(files[k]) != ".toml") continue;
-        const Result<config::Document> document = config::load(files[k]);
-        if (!document) continue;  // the command tells what is wrong with it
-        for (const auto& [key, value] : std::get<config::Table>(document->root.data)) {
-            const auto* name = key == "robot" ? std::get_if<std::string>(&value.data) : nullptr;
-            if (name != nullptr) files.push_back(files[k].parent_path() / *name);
-        }
-    }
-    return files;
 }
 
 /// Rows depend on these bytes: any change makes a different study.

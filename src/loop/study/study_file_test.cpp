@@ -122,6 +122,12 @@ TEST_CASE("a table of rows: its columns are keys of the robot file, or keys of t
     const auto named = parsed(text + "key.modulus = { set = \"material.soft.youngs_modulus\" }\n", file);
     REQUIRE_FALSE(named);
     CHECK(named.error().message.ends_with("designs.csv:1: has no column \"modulus\", which is a key of the study"));
+    REQUIRE(write_file(folder / "designs.csv", "cable[0].target.length_ratio,object[0].mass ( g ),cable[1]\n5,1,2\n"));
+    const auto indexed = parsed(text, file);
+    REQUIRE_MESSAGE(indexed, (indexed ? "" : indexed.error().message));
+    CHECK(row_words(*indexed, 0, "") ==
+          std::vector<std::string>{"simulate", "finger.toml", "--set", "cable[0].target.length_ratio=5", "--set",
+                                   "object[0].mass=1 g", "--set", "cable[1]=2", "--json"});
     REQUIRE(write_file(folder / "designs.csv", "a,b\n1,2\n3,\n"));
     const auto hole = parsed(text, file);
     REQUIRE_FALSE(hole);
@@ -164,6 +170,8 @@ TEST_CASE("an output that all rows would write is refused, one of each row is no
     CHECK(mistake(command("\"-o\", \"x\"") + rest) == refused + "-o\", \"{row}/out\"");
     CHECK(mistake(command("\"--output\", \"x\"") + rest) == refused + "--output\", \"{row}/out\"");
     CHECK(mistake(command("\"--output=x\"") + rest) == refused + "--output\", \"{row}/out\"");
+    CHECK(mistake(command("\"-ox\"") + rest) == refused + "-o\", \"{row}/out\"");
+    CHECK(mistake(command("\"-o{row}/x\"") + rest) == "");
     CHECK(mistake(command("\"-o\", \"{row}/x\"") + rest) == "");
     CHECK(mistake(command("\"-o\", \"x_{E}\"") + "plan = \"grid\"\nkey.E = { values = [1, 2] }\n" + tension) == "");
 }

@@ -13,8 +13,7 @@ namespace {
 
 /// In lower case and without its unit.
 std::string plain_name(const std::string& column) {
-    const std::string low = lower_case(column);
-    return std::string(trimmed(std::string_view(low).substr(0, low.find_first_of("(["))));
+    return lower_case(without_csv_unit(column));
 }
 
 }  // namespace

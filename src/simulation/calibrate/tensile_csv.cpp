@@ -54,7 +54,11 @@ Result<Columns> read_header(const CsvTable& table) {
     columns.strain = **strain;
     columns.stress = **stress;
     columns.is_stretch = stretch->has_value();
-    const std::string_view strain_unit = csv_unit(table.columns[columns.strain]);
+    const std::string& strain_column = table.columns[columns.strain];
+    const std::string_view strain_unit = csv_unit(strain_column);
+    if (strain_unit.empty() && strain_column.find_first_of("([") != std::string::npos)
+        return input_error_at(table.file, table.header_line, "column \"{}\": a unit stands in brackets at its end",
+                              strain_column);
     if (strain_unit == "%")
         columns.strain_factor = 0.01;
     else if (!strain_unit.empty() && strain_unit != "-" && strain_unit != "1" && strain_unit != "mm/mm")

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -29,6 +31,16 @@ constexpr std::chrono::milliseconds pause{80};      // after the last input befo
                                                     // come faster
 constexpr double quick_s = 0.05;                    // per increment: fast enough for interaction
 constexpr double slow_s = 0.15;
+
+Result<std::shared_ptr<const Built>> made(RobotText source, int revision, Progress& watch) {
+    std::vector<std::string> assignments;
+    if (source.accuracy == Accuracy::preview) assignments.emplace_back("mesh.order=1");
+    Result<robot::Robot> robot = robot::parse_robot(source.text, source.file, assignments);
+    if (!robot) return tl::unexpected(robot.error());
+    Result<robot::Scene> scene = robot::build_scene(std::move(*robot), watch);
+    if (!scene) return tl::unexpected(scene.error());
+    return std::make_shared<const Built>(std::move(source), std::move(*scene), revision);
+}
 
 }  // namespace
 
@@ -217,14 +229,27 @@ void SimulationSession::build(RobotText source) {
                      ? ""
                      : fmt::format(R"({{"type":"problem","lines":{}}})", problem_lines(error)));
     };
-    std::vector<std::string> assignments;
-    if (source.accuracy == Accuracy::preview) assignments.emplace_back("mesh.order=1");
-    Result<robot::Robot> robot = robot::parse_robot(source.text, source.file, assignments);
-    if (!robot) return refuse(robot.error());
-    Result<robot::Scene> scene = robot::build_scene(std::move(*robot), watch);
-    if (!scene) return refuse(scene.error());
+    bool replaced = false;
+    const auto stopped_by = [&](const std::string& what) {
+        if (replaced) hand_ = shown_ = nullptr;  // half made; else the old robot goes on
+        refuse({Cause::failed, "the robot could not be built: " + what});
+    };
+    try {
+        const auto built = made(std::move(source), revision_ + 1, watch);
+        if (!built) return refuse(built.error());
+        ++revision_;
+        replaced = true;
+        show(*built);
+        finished("");
+    } catch (const std::bad_alloc&) {  // thrown out of a thread, either would end the studio
+        stopped_by("it needs more memory than there is");
+    } catch (const std::exception& error) {
+        stopped_by(error.what());
+    }
+}
+
+void SimulationSession::show(const std::shared_ptr<const Built>& built) {
     const std::shared_ptr<const Built> before = this->built();
-    auto built = std::make_shared<const Built>(std::move(source), std::move(*scene), ++revision_);
     start(built);
     want_as_before(before.get(), *built);
     {
@@ -237,7 +262,6 @@ void SimulationSession::build(RobotText source) {
     forget_history();
     tell("scene", dumped({{"type", "scene"}, {"revision", built->revision}}));
     publish({true, !is_input_waiting(), 0, 0, ""}, *fine_);  // rest is not the target of a robot that was elsewhere
-    finished("");
 }
 
 bool SimulationSession::is_input_waiting() const {

@@ -72,6 +72,7 @@ private:
     void work();
     void change(const std::function<void(WantedInputs&)>& how);
     void build(RobotText source);
+    void show(const std::shared_ptr<const Built>& built);
     void start(const std::shared_ptr<const Built>& built);
     [[nodiscard]] bool is_input_waiting() const;
     void want_as_before(const Built* before, const Built& now);
