@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -86,7 +87,7 @@ class Robot:
         path = _check.path(file, "file")
         listed = _changes(changes)
         robot = cls.__new__(cls)
-        robot._robot = _pliant.Robot.load(path, listed)
+        robot._robot = _pliant.Robot.load(os.fspath(path), listed)
         robot.text = path.read_text(encoding="utf-8")
         robot.folder = path.parent.absolute()
         robot.changes = tuple(listed)
@@ -117,7 +118,7 @@ class Robot:
         self._in_python = in_python
         self._called = called
         with arguments_for_options({"--set ": "changes: "}), self._in_its_words():
-            self._robot = _pliant.Robot.parse(text, self.folder, listed)
+            self._robot = _pliant.Robot.parse(text, os.fspath(self.folder), listed)
 
     @contextmanager
     def _in_its_words(self, file: Path | None = None) -> Iterator[None]:
