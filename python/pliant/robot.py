@@ -261,6 +261,15 @@ class Mesh(Value):
             last = len(self.region_names) - 1
             raise InputError(f"regions has {wrong[0]}; with these region_names it must be from 0 to {last}")
 
+    def __reduce__(self) -> tuple[Any, ...]:  # through __init__, so that what is unpickled cannot be written either
+        return type(self), (self.points, self.tets, self.regions, self.region_names)
+
+    def __copy__(self) -> Mesh:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Mesh:
+        return self
+
     def _mesh(self) -> _pliant.Mesh:
         regions = np.empty(0, dtype=np.int32) if self.regions is None else self.regions
         return _pliant.Mesh(self.points, self.tets, regions, list(self.region_names))
