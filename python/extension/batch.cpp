@@ -3,14 +3,11 @@
 
 #include <pybind11/stl.h>
 
-#include <atomic>
-#include <mutex>
-#include <thread>
-
 #include "arrays.hpp"
 #include "interpreter.hpp"
 #include "parts.hpp"
 #include "pliant/linearisation.hpp"
+#include "turns.hpp"
 #include "values.hpp"
 #include "watcher.hpp"
 
@@ -22,26 +19,7 @@ struct Many {
         : models(all), batch(all, options, threads) {}
     std::vector<Model> models;
     Batch batch;
-
-    /// Calls `use` by one thread at a time, without the interpreter's lock.
-    template <class Use>
-    auto alone(const Use& use) {
-        if (owner_ == std::this_thread::get_id())
-            throw Failure(Failure::Kind::input, "the batch is at work: its progress cannot use it");
-        const Unlocked unlocked;
-        const std::lock_guard lock(mutex_);
-        owner_ = std::this_thread::get_id();
-        const Leave leave{owner_};
-        return use();
-    }
-
-private:
-    struct Leave {
-        ~Leave() { owner = std::thread::id(); }
-        std::atomic<std::thread::id>& owner;
-    };
-    std::mutex mutex_;
-    std::atomic<std::thread::id> owner_;
+    Turns turns{"batch"};
 };
 
 /// A Python None is passed as a null pointer.
@@ -63,7 +41,7 @@ std::vector<StepResult> step_all(Many& many, const std::vector<State*>& states, 
     const Watch watch = watcher.watch();
     std::vector<State> next = states_of(states);
     std::vector<StepResult> results;
-    const std::exception_ptr thrown = many.alone([&]() -> std::exception_ptr {
+    const std::exception_ptr thrown = many.turns.take([&]() -> std::exception_ptr {
         try {
             results = many.batch.step(next, inputs, watch);
         } catch (...) {
@@ -88,7 +66,7 @@ std::vector<StepResult> step_all_to(Many& many, const std::vector<State*>& state
 
 py::list observe(Many& many, const std::vector<State*>& states) {
     const std::vector<State> copies = states_of(states);
-    const std::vector<Observation> seen = many.alone([&] { return many.batch.observe(copies); });
+    const std::vector<Observation> seen = many.turns.take([&] { return many.batch.observe(copies); });
     py::list list;
     for (const Observation& one : seen) list.append(dict_of(one));
     return list;
