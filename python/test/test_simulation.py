@@ -281,6 +281,16 @@ def test_a_state_can_be_read_while_another_thread_steps_it(tmp_path):
     assert not failed
 
 
+def test_a_step_that_needs_no_iteration_gives_the_same_state_whatever_was_solved_before():
+    model = block()
+    lengths = model.rest().inputs.values_SI
+    first, later = model.rest(), model.rest()
+    assert model.step(first, lengths).iterations == 0
+    model.solve(0.9 * lengths)
+    assert model.step(later, lengths).iterations == 0
+    assert first == later and first.bytes() == later.bytes()
+
+
 def test_threads_share_a_model_and_get_the_same_bits(model):
     alone = pulled(model)
     found = []
