@@ -15,8 +15,8 @@ namespace pliant::python {
 namespace {
 
 struct Many {
-    Many(const std::vector<Model>& all, const StepOptions& options, int threads)
-        : models(all), batch(all, options, threads) {}
+    Many(const std::vector<Model>& all, const StepOptions& options, int threads, const Watch& watch)
+        : models(all), batch(all, options, threads, watch) {}
     std::vector<Model> models;
     Batch batch;
     Turns turns{"batch"};
@@ -80,8 +80,10 @@ void add_batch(py::module_& module) {
                          std::optional<int> iteration_limit, int threads) {
             std::vector<Model> all;
             for (const Model* model : models) all.push_back(there(model));
+            Watcher watcher{py::none()};
+            const Watch watch = watcher.watch();
             const Unlocked unlocked;
-            return std::make_unique<Many>(all, StepOptions{tolerance, iteration_limit}, threads);
+            return std::make_unique<Many>(all, StepOptions{tolerance, iteration_limit}, threads, watch);
         }))
         .def_property_readonly("size", [](const Many& many) { return many.batch.size(); })
         .def_property_readonly("threads", [](const Many& many) { return many.batch.threads(); })

@@ -201,8 +201,12 @@ def plan(job: PathLike) -> PrintPlan:
     return _plan(_pliant.plan(_check.path_text(job, "job")))
 
 
-def check(job: PathLike) -> list[str]:
+def check(job: PathLike, *, progress: Progress | None = None) -> list[str]:
     """Verifies a job as is done before every print: each image against its checksum, the G-code against the machine.
+
+    Args:
+        job: the file that :func:`slice` wrote.
+        progress: called with (stage, share) some times a second; False cancels.
 
     Returns:
         Warnings about what could not be verified.
@@ -210,7 +214,7 @@ def check(job: PathLike) -> list[str]:
     Raises:
         Failure: with the file, the entry or line, and the layer.
     """
-    return _pliant.check(_check.path_text(job, "job"))
+    return _pliant.check(_check.path_text(job, "job"), _check.progress(progress))
 
 
 def print_virtually(job: PathLike, *, block: bool = False, progress: Progress | None = None) -> VirtualPrint:
