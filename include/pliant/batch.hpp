@@ -26,8 +26,9 @@ class PLIANT_API Batch {
 public:
     /// One stepper for each model; the same model may occur several times. `threads`: 0 for one per core; never more
     /// than there are models.
-    /// @throws Failure if an option is out of range, or the number of threads is negative.
-    explicit Batch(const std::vector<Model>& models, const StepOptions& options = {}, int threads = 0);
+    /// @throws Failure if an option is out of range, or the number of threads is negative; or when cancelled.
+    explicit Batch(const std::vector<Model>& models, const StepOptions& options = {}, int threads = 0,
+                   const Watch& watch = {});
     /// Moves; the moved-from batch may only be assigned to or destroyed.
     Batch(Batch&&) noexcept;
     /// Moves; the moved-from batch may only be assigned to or destroyed.

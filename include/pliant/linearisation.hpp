@@ -73,7 +73,8 @@ struct Measure {
 /// The equilibrium equations F(z) = 0, linearised at a state: elements, cables and chambers, follower pressure,
 /// contact, friction as found at the state, inertia. The unknowns z are the coordinates of the unconstrained nodes,
 /// three for each, followed by the multipliers that are not prescribed: cable tensions and minus the chamber pressures.
-/// Not thread-safe.
+/// It works for one caller at a time: while it does, on another thread, its other members that are not const throw a
+/// Failure.
 ///
 /// Lagged quantities are held constant as found at the state: the normal forces and tangents of contact friction, and
 /// the tension shares of cables with friction. Where contacts slide, or such cables move in their guides, a derivative

@@ -66,8 +66,8 @@ PLIANT_API PrintPlan slice_job(const SliceOptions& options, const std::filesyste
 /// Verifies a job as is done before every print: each image against its checksum, the G-code against the machine.
 /// Returns warnings about what could not be verified, one sentence each.
 /// @throws Failure if the file cannot be read or the job does not pass; the message names the file and, where it
-/// applies, the entry or line and the layer.
-PLIANT_API std::vector<std::string> check_job(const std::filesystem::path& job);
+/// applies, the entry or line and the layer; or when cancelled.
+PLIANT_API std::vector<std::string> check_job(const std::filesystem::path& job, const Watch& watch = {});
 
 /// The cured part as voxels: one projector pixel wide, one cured layer high; just large enough to hold everything.
 struct CuredBlock {

@@ -121,8 +121,9 @@ struct ReductionCheck {
     double whole_s = 0;          ///< of the step of the whole robot
 };
 
-/// Solves a reduced model. Not thread-safe; any number of steppers may share a model. It takes states of its model and
-/// of copies of that.
+/// Solves a reduced model. Any number of steppers may share a model; each works for one caller at a time: while it
+/// does, on another thread or in a Watch, its other members throw a Failure, except start(). It takes states of its
+/// model and of copies of that.
 class PLIANT_API ReducedStepper {
 public:
     /// Sets up the solver.

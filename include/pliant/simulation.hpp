@@ -291,9 +291,9 @@ struct Fields {
 };
 
 /// Advances a robot from one state to the next. Any number of steppers may share a model; each works for one caller at
-/// a time: while it does, on another thread or in a Watch, its other members throw a Failure. It accepts states of its
-/// model and of copies of that model. A state of any other Model, even one of the same robot, is brought over with
-/// State::bytes() and state_from().
+/// a time: while it does, on another thread or in a Watch, its other members throw a Failure, except fields() and
+/// cable_paths(), which need the model alone. It accepts states of its model and of copies of that model. A state of
+/// any other Model, even one of the same robot, is brought over with State::bytes() and state_from().
 class PLIANT_API Stepper {
 public:
     /// Sets up the solver; costs about as much as one or two steps.

@@ -3,14 +3,11 @@
 
 #include <pybind11/stl.h>
 
-#include <atomic>
-#include <mutex>
-#include <thread>
-
 #include "arrays.hpp"
 #include "interpreter.hpp"
 #include "parts.hpp"
 #include "pliant/linearisation.hpp"
+#include "turns.hpp"
 #include "values.hpp"
 #include "watcher.hpp"
 
@@ -18,30 +15,11 @@ namespace pliant::python {
 namespace {
 
 struct Many {
-    Many(const std::vector<Model>& all, const StepOptions& options, int threads)
-        : models(all), batch(all, options, threads) {}
+    Many(const std::vector<Model>& all, const StepOptions& options, int threads, const Watch& watch)
+        : models(all), batch(all, options, threads, watch) {}
     std::vector<Model> models;
     Batch batch;
-
-    /// Calls `use` by one thread at a time, without the interpreter's lock.
-    template <class Use>
-    auto alone(const Use& use) {
-        if (owner_ == std::this_thread::get_id())
-            throw Failure(Failure::Kind::input, "the batch is at work: its progress cannot use it");
-        const Unlocked unlocked;
-        const std::lock_guard lock(mutex_);
-        owner_ = std::this_thread::get_id();
-        const Leave leave{owner_};
-        return use();
-    }
-
-private:
-    struct Leave {
-        ~Leave() { owner = std::thread::id(); }
-        std::atomic<std::thread::id>& owner;
-    };
-    std::mutex mutex_;
-    std::atomic<std::thread::id> owner_;
+    Turns turns{"batch"};
 };
 
 /// A Python None is passed as a null pointer.
@@ -63,7 +41,7 @@ std::vector<StepResult> step_all(Many& many, const std::vector<State*>& states, 
     const Watch watch = watcher.watch();
     std::vector<State> next = states_of(states);
     std::vector<StepResult> results;
-    const std::exception_ptr thrown = many.alone([&]() -> std::exception_ptr {
+    const std::exception_ptr thrown = many.turns.take([&]() -> std::exception_ptr {
         try {
             results = many.batch.step(next, inputs, watch);
         } catch (...) {
@@ -88,7 +66,7 @@ std::vector<StepResult> step_all_to(Many& many, const std::vector<State*>& state
 
 py::list observe(Many& many, const std::vector<State*>& states) {
     const std::vector<State> copies = states_of(states);
-    const std::vector<Observation> seen = many.alone([&] { return many.batch.observe(copies); });
+    const std::vector<Observation> seen = many.turns.take([&] { return many.batch.observe(copies); });
     py::list list;
     for (const Observation& one : seen) list.append(dict_of(one));
     return list;
@@ -102,8 +80,10 @@ void add_batch(py::module_& module) {
                          std::optional<int> iteration_limit, int threads) {
             std::vector<Model> all;
             for (const Model* model : models) all.push_back(there(model));
+            Watcher watcher{py::none()};
+            const Watch watch = watcher.watch();
             const Unlocked unlocked;
-            return std::make_unique<Many>(all, StepOptions{tolerance, iteration_limit}, threads);
+            return std::make_unique<Many>(all, StepOptions{tolerance, iteration_limit}, threads, watch);
         }))
         .def_property_readonly("size", [](const Many& many) { return many.batch.size(); })
         .def_property_readonly("threads", [](const Many& many) { return many.batch.threads(); })

@@ -3,29 +3,28 @@
 
 #include <pybind11/stl.h>
 
-#include <mutex>
+#include <memory>
 
 #include "arrays.hpp"
 #include "interpreter.hpp"
 #include "measures.hpp"
 #include "parts.hpp"
+#include "turns.hpp"
 #include "values.hpp"
 
 namespace pliant::python {
 namespace {
 
-/// A Linearisation shared by threads, with a lock.
+/// A Linearisation shared by threads.
 struct Shared {
     explicit Shared(const State& state) : at(state) {}
     Linearisation at;
-    std::mutex mutex;
+    Turns turns{"linearisation"};
 };
 
 template <class Use>
 auto locked(Shared& shared, const Use& use) {
-    const Unlocked unlocked;
-    const std::lock_guard lock(shared.mutex);
-    return use(shared.at);
+    return shared.turns.take([&] { return use(shared.at); });
 }
 
 py::tuple change_tuple(Change change) {
@@ -93,7 +92,11 @@ py::array jacobian(Shared& shared, const std::vector<std::size_t>& markers, cons
 
 void add_linearisation(py::module_& module) {
     py::class_<Shared>(module, "Linearisation")
-        .def(py::init<const State&>(), py::call_guard<Unlocked>())
+        .def(py::init([](const State& state) {
+            const State same = state;  // another thread may step the caller's meanwhile
+            const Unlocked unlocked;
+            return std::make_unique<Shared>(same);
+        }))
         .def_property_readonly("size", [](const Shared& shared) { return shared.at.size(); })
         .def("multiply", &product<&Linearisation::multiply>)
         .def("multiply_transposed", &product<&Linearisation::multiply_transposed>)

@@ -48,6 +48,13 @@ py::dict plan(const std::filesystem::path& job) {
     return plan_dict(plan);
 }
 
+std::vector<std::string> check_file(const std::filesystem::path& job, py::object progress) {
+    Watcher watcher(std::move(progress));
+    const Watch watch = watcher.watch();
+    const Unlocked unlocked;
+    return check_job(job, watch);
+}
+
 /// (layers, y, x) voxels with their resins.
 py::object block_of(std::shared_ptr<const CuredBlock> block) {
     if (!block) return py::none();
@@ -78,7 +85,7 @@ py::dict print_job(const std::filesystem::path& job, bool block, py::object prog
 void add_printing(py::module_& module) {
     module.def("slice", &slice);
     module.def("plan", &plan);
-    module.def("check", &check_job, py::call_guard<Unlocked>());
+    module.def("check", &check_file);
     module.def("print_virtually", &print_job);
 }
 

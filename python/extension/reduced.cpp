@@ -5,11 +5,11 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <memory>
-#include <mutex>
 
 #include "arrays.hpp"
 #include "interpreter.hpp"
 #include "parts.hpp"
+#include "turns.hpp"
 #include "values.hpp"
 #include "watcher.hpp"
 
@@ -24,15 +24,13 @@ public:
     /// Without the interpreter's lock.
     template <class Use>
     auto with(const Use& use) {
-        const Unlocked unlocked;
-        const std::lock_guard lock(mutex_);
-        return use(stepper_);
+        return turns_.take([&] { return use(stepper_); });
     }
 
 private:
     ReducedModel model_;
-    std::mutex mutex_;
     ReducedStepper stepper_;
+    Turns turns_{"reduced model"};
 };
 
 std::unique_ptr<ReducedEngine> reduce_model(const Model& model, int samples, double basis_error, double force_error,

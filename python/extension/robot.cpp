@@ -91,9 +91,18 @@ void add_robot(py::module_& module) {
         .def("velocities", [](const State& state) { return array_of(state.velocities()); })
         .def("inputs", [](const State& state) { return tuple_of(state.inputs()); })
         .def("bytes", [](const State& state) { return py::bytes(state.bytes()); })
-        .def("save", &State::save, py::call_guard<Unlocked>())
-        .def(
-            "equals", [](const State& a, const State& b) { return a == b; }, py::call_guard<Unlocked>());
+        // Of copies: another thread may step the caller's states meanwhile.
+        .def("save",
+             [](const State& state, const std::filesystem::path& file) {
+                 const State same = state;
+                 const Unlocked unlocked;
+                 same.save(file);
+             })
+        .def("equals", [](const State& a, const State& b) {
+            const State one = a, other = b;
+            const Unlocked unlocked;
+            return one == other;
+        });
 }
 
 }  // namespace pliant::python

@@ -61,7 +61,9 @@ def quantity(text: str, unit: str) -> float:
     """
     if not isinstance(text, str) or not isinstance(unit, str):
         raise TypeError('quantity takes two texts, as quantity("4 mm", "m")')
-    return _pliant.quantity(text, unit)
+    from ._check import text as checked
+
+    return _pliant.quantity(checked(text, "text"), checked(unit, "unit"))
 
 
 #: Names of each file, which is imported when the first of them is used: `import pliant` stays quick.

@@ -126,8 +126,18 @@ def path(value: Any, what: str) -> Path:
         if found == "":
             raise InputError(f"{what} is an empty text; write a path")
         if isinstance(found, str) and "\0" not in found:
+            try:
+                os.fsencode(found)  # names that are not UTF-8 have halves of characters, too, but those that stand for bytes
+            except UnicodeEncodeError as error:
+                half = ascii(found[error.start])
+                raise InputError(f"{what} has {half}, which is no character: it has no place in a path") from None
             return Path(found)
     raise InputError(f"{what} must be a path, not {_shown(value)}")
+
+
+def path_text(value: Any, what: str) -> str:
+    """As :func:`path`, as the extension takes it: it would turn an interrupt within Path.__fspath__ into a TypeError."""
+    return os.fspath(path(value, what))
 
 
 def new_file(value: Any, what: str) -> Path:

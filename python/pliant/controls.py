@@ -154,7 +154,7 @@ def drive_of(name: str, rest: Rest, wanted: Any) -> tuple[str, float]:
         if not unit:
             raise InputError(f'{what}: {kind} is a plain number, not "{number}"', key=name)
         try:
-            value = _check.number(_pliant.quantity(number, unit), f'"{number}"')
+            value = _check.number(_pliant.quantity(_check.text(number, "the text"), unit), f'"{number}"')
         except InputError as error:
             raise InputError(f"{what}: {kind}: {error}", key=name) from None
     else:

@@ -146,7 +146,7 @@ class Identification(NotPickled):
     def write(self, folder: PathLike) -> None:
         """Writes the folder that ``pliant identify -o`` writes, whole or not at all."""
         with self._before._in_its_words():
-            self._found.write(_check.path(folder, "folder"))
+            self._found.write(_check.path_text(folder, "folder"))
 
 
 def identify(
@@ -173,10 +173,10 @@ def identify(
         progress: called with (stage, share) some times a second; False cancels.
     """
     if isinstance(measured, str) and "\n" in measured:
-        csv, file = measured, "measured.csv"
+        csv, file = measured, b"measured.csv"
     else:
         path = _check.path(measured, "measured")
-        csv, file = _read(path), str(path)
+        csv, file = _read(path), os.fsencode(path)
     _check.one_of(judge, ("nothing", "every_second", "second_half"), "judge")
     owned = _check.instance(robot, Robot, "robot")
     with owned._in_its_words():

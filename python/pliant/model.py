@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -97,7 +98,7 @@ class State:
             InputError: the path is a folder, or is in a folder that does not exist.
             Failure: the file cannot be written.
         """
-        self._state.save(_check.new_file(file, "file"))
+        self._state.save(os.fspath(_check.new_file(file, "file")))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, State):
@@ -256,7 +257,7 @@ class Model:
 
     def load_state(self, file: PathLike) -> State:
         """Restores a state from a file written by :meth:`State.save`, as :meth:`state_from` does."""
-        return State(self, self._engine.load(_check.path(file, "file")))
+        return State(self, self._engine.load(_check.path_text(file, "file")))
 
     # ---- inputs
 

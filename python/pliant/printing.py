@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -152,8 +153,8 @@ def slice(
     with arguments_for_options(_ARGUMENTS), _files_of(inputs) as files:
         plan = _pliant.slice(
             files,
-            _check.path(printer, "printer"),
-            _check.path(job, "job"),
+            _check.path_text(printer, "printer"),
+            _check.path_text(job, "job"),
             _changes(changes),
             _resin_words(resins),
             _word(layer, "layer"),
@@ -175,30 +176,37 @@ def _word(value: Any, what: str) -> str:
 def _resin_words(resins: Any) -> list[str]:
     if resins is not None and not isinstance(resins, Mapping):
         raise InputError('resins must be a dict, as {"soft": "elastic 50A"}')
-    return [f"{material}={resin}" for material, resin in (resins or {}).items()]
+    return [
+        f'{_check.text(material, "each material of resins")}={_check.text(resin, f"the resin of {material}")}'
+        for material, resin in (resins or {}).items()
+    ]
 
 
 @contextmanager
-def _files_of(inputs: Any) -> Iterator[list[str]]:
-    """The files to be sliced; a robot is written to one that lasts as long as the work."""
+def _files_of(inputs: Any) -> Iterator[list[bytes]]:
+    """The files to be sliced, whose names need not be UTF-8; a robot is written to one that lasts as long as the work."""
     if not isinstance(inputs, Robot):
         several = isinstance(inputs, Iterable) and not isinstance(inputs, (str, bytes))
-        yield [str(_check.path(file, "inputs")) for file in (inputs if several else [inputs])]
+        yield [os.fsencode(_check.path(file, "inputs")) for file in (inputs if several else [inputs])]
         return
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "robot.toml"
-        file.write_text(inputs._robot.text(Path(folder)), encoding="utf-8")
+        file.write_text(inputs._robot.text(folder), encoding="utf-8")
         with inputs._in_its_words(file):
-            yield [str(file)]
+            yield [os.fsencode(file)]
 
 
 def plan(job: PathLike) -> PrintPlan:
     """Recomputes the plan of a job for the printer stored in it."""
-    return _plan(_pliant.plan(_check.path(job, "job")))
+    return _plan(_pliant.plan(_check.path_text(job, "job")))
 
 
-def check(job: PathLike) -> list[str]:
+def check(job: PathLike, *, progress: Progress | None = None) -> list[str]:
     """Verifies a job as is done before every print: each image against its checksum, the G-code against the machine.
+
+    Args:
+        job: the file that :func:`slice` wrote.
+        progress: called with (stage, share) some times a second; False cancels.
 
     Returns:
         Warnings about what could not be verified.
@@ -206,7 +214,7 @@ def check(job: PathLike) -> list[str]:
     Raises:
         Failure: with the file, the entry or line, and the layer.
     """
-    return _pliant.check(_check.path(job, "job"))
+    return _pliant.check(_check.path_text(job, "job"), _check.progress(progress))
 
 
 def print_virtually(job: PathLike, *, block: bool = False, progress: Progress | None = None) -> VirtualPrint:
@@ -217,7 +225,7 @@ def print_virtually(job: PathLike, *, block: bool = False, progress: Progress | 
         block: also return the cured part as arrays: two bytes for each voxel.
         progress: called with (stage, share) some times a second; False cancels.
     """
-    found = _pliant.print_virtually(_check.path(job, "job"), bool(block), _check.progress(progress))
+    found = _pliant.print_virtually(_check.path_text(job, "job"), bool(block), _check.progress(progress))
     found["cured_mm3"] = dict(found["cured_mm3"])
     found["block"] = None if found["block"] is None else CuredBlock(*found["block"])
     return VirtualPrint(**found)

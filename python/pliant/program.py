@@ -129,7 +129,7 @@ class ProgramResult(NotPickled):
         if size.shape != (2,):
             raise InputError("picture_size_px must be (width, height)")
         eye = None if view is None else _check.numbers(view, "view", (3,)).tolist()
-        place = _check.path(folder, "folder")
+        place = _check.path_text(folder, "folder")
         self._result.write(place, pictures, size.tolist(), bool(film), eye, _check.progress(progress))
 
     def remove_checkpoint(self) -> None:
@@ -178,8 +178,8 @@ def run(
         result = _pliant.run(
             model._model,
             heard,
-            "" if measured is None else _check.path(measured, "measured"),
-            "" if checkpoint is None else _check.path(checkpoint, "checkpoint"),
+            "" if measured is None else _check.path_text(measured, "measured"),
+            "" if checkpoint is None else _check.path_text(checkpoint, "checkpoint"),
             _check.integer(checkpoint_every, "checkpoint_every"),
             bool(resume),
             _check.progress(progress),

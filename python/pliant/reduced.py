@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -144,7 +145,7 @@ class ReducedModel:
                 tolerance of the model.
         """
         owned = _check.instance(model, Model, "model")
-        return cls(owned, _pliant.load_reduced(owned._model, _check.path(file, "file")))
+        return cls(owned, _pliant.load_reduced(owned._model, _check.path_text(file, "file")))
 
     def save(self, file: PathLike) -> None:
         """Writes the reduced model to a file whose name ends in .reduced, whole or not at all."""
@@ -152,7 +153,7 @@ class ReducedModel:
         if found.suffix != ".reduced":
             better = found.with_suffix(".reduced").name
             raise InputError(f"{found}: the file of a reduced model ends in .reduced, as in {better}", file=str(found))
-        self._engine.save(found)
+        self._engine.save(os.fspath(found))
 
     @property
     def inputs(self) -> list[SteeredInput]:
@@ -245,7 +246,7 @@ class ReducedModel:
         """Those of the file that :meth:`save` writes."""
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "reduced"
-            self._engine.save(file)
+            self._engine.save(os.fspath(file))
             return file.read_bytes()
 
     def __reduce__(self) -> tuple[Any, ...]:

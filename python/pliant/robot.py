@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -86,7 +87,7 @@ class Robot:
         path = _check.path(file, "file")
         listed = _changes(changes)
         robot = cls.__new__(cls)
-        robot._robot = _pliant.Robot.load(path, listed)
+        robot._robot = _pliant.Robot.load(os.fspath(path), listed)
         robot.text = path.read_text(encoding="utf-8")
         robot.folder = path.parent.absolute()
         robot.changes = tuple(listed)
@@ -117,7 +118,7 @@ class Robot:
         self._in_python = in_python
         self._called = called
         with arguments_for_options({"--set ": "changes: "}), self._in_its_words():
-            self._robot = _pliant.Robot.parse(text, self.folder, listed)
+            self._robot = _pliant.Robot.parse(text, os.fspath(self.folder), listed)
 
     @contextmanager
     def _in_its_words(self, file: Path | None = None) -> Iterator[None]:
@@ -259,6 +260,15 @@ class Mesh(Value):
         if wrong.size:
             last = len(self.region_names) - 1
             raise InputError(f"regions has {wrong[0]}; with these region_names it must be from 0 to {last}")
+
+    def __reduce__(self) -> tuple[Any, ...]:  # through __init__, so that what is unpickled cannot be written either
+        return type(self), (self.points, self.tets, self.regions, self.region_names)
+
+    def __copy__(self) -> Mesh:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Mesh:
+        return self
 
     def _mesh(self) -> _pliant.Mesh:
         regions = np.empty(0, dtype=np.int32) if self.regions is None else self.regions

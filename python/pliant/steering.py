@@ -140,7 +140,7 @@ class InverseResult(NotPickled):
             Warnings where the written program, run from rest, does not lead to the waypoints that were found.
         """
         with self.model.robot._in_its_words():
-            return self._result.write(_check.path(folder, "folder"), _check.progress(progress))
+            return self._result.write(_check.path_text(folder, "folder"), _check.progress(progress))
 
     def __len__(self) -> int:
         return self._result.waypoint_count
@@ -258,7 +258,7 @@ class Workspace(NotPickled):
 
     def write(self, folder: PathLike, *, progress: Progress | None = None) -> None:
         """Writes the folder that ``pliant workspace -o`` writes, whole or not at all."""
-        self._space.write(_check.path(folder, "folder"), _check.progress(progress))
+        self._space.write(_check.path_text(folder, "folder"), _check.progress(progress))
 
     def remove_checkpoint(self) -> None:
         """Deletes the checkpoint of the search, if it has one."""
@@ -296,7 +296,7 @@ def workspace(
             owned._model,
             _check.integer(side, "side"),
             _check.integer(between, "between"),
-            "" if checkpoint is None else _check.path(checkpoint, "checkpoint"),
+            "" if checkpoint is None else _check.path_text(checkpoint, "checkpoint"),
             bool(resume),
             _check.progress(progress),
         )

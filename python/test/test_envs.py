@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robots import block
 
 import pliant
 from pliant.envs import Crawl, Follow, Grasp, Reach, RobotEnv, Vector
@@ -185,6 +186,9 @@ def test_invalid_calls_are_refused():
         "seed must be a whole number": lambda: env.reset(seed=1.5),
         "goal has shape": lambda: env.reset(options={"goal": 3}),
         "render_mode is None": lambda: Reach(env.model, render_mode="human"),
+        "Reach needs a marker \"tip\"; the robot 'block' has none": lambda: Reach(block()),
+        "Grasp needs an object \"cube\"; the robot 'block' has none": lambda: Grasp(block()),
+        "Crawl needs 3 markers; the robot 'block' has 1": lambda: Crawl(block()),
         "count is 0": lambda: Vector(Reach, 0, model=env.model),
     }
     for text, call in wrong.items():

@@ -1,5 +1,6 @@
 """What people get wrong ends in one sentence, with its place."""
 
+import os
 import pickle
 
 import numpy as np
@@ -187,6 +188,21 @@ MISTAKES = {
     ),
     "a text has half a character": (lambda m: pliant.Robot.parse("name = 'b\udcff'"), "text has '\\udcff'"),
     "a change has half a character": (lambda m: m.robot.changed(["name=b\udcff"]), "changes has '\\udcff'"),
+    "a quantity has half a character": (lambda m: pliant.quantity("4\ud800 mm", "m"), "text has '\\ud800'"),
+    "a control has half a character": (
+        lambda m: m.inputs({"flexor": {"shortening": "4\ud800 mm"}}),
+        "cable \"flexor\": shortening: the text has '\\ud800'",
+    ),
+    "a path has half a character": (lambda m: pliant.plan("\ud800.zip"), "job has '\\ud800'"),
+    "a path is not UTF-8": (lambda m: pliant.plan(os.fsdecode(b"no\xff.zip")), ".zip: no such file"),
+    "a file to slice is not UTF-8": (
+        lambda m: pliant.slice(os.fsdecode(b"no\xff.toml"), "no.zip", printer="examples/printers/tower.toml"),
+        ".toml: ",
+    ),
+    "a resin is None": (
+        lambda m: pliant.slice("no.toml", "no.zip", printer="no.toml", resins={"soft": None}),
+        "the resin of soft must be a text, not None",
+    ),
     "a measured thing has half a character": (
         lambda m: m.linearise(m.rest()).value(pliant.Measure("tension", "\udcff")),
         "name has '\\udcff'",

@@ -31,6 +31,8 @@ def test_a_plan_equals_that_of_the_command_line(job):
     vats = [(v["slot"], v["refill"], [r["layer"] for r in v["refills"]]) for v in told["vats"]]
     assert vats == [(v.slot, v.refill, v.refills) for v in plan.vats]
     assert isinstance(pliant.check(file), list)
+    with pytest.raises(pliant.Cancelled):
+        pliant.check(file, progress=lambda *_: False)
 
 
 def test_the_cured_block_has_the_volume_of_the_part(job):

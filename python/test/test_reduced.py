@@ -73,3 +73,9 @@ def test_mistakes_with_reduced_models(model, reduced):
         reduced.step(model.rest(), None)
     with pytest.raises(pliant.InputError, match="there is no cable or chamber 'extensor'"):
         reduced.step(reduced.start(), {"extensor": {"shortening": "1 mm"}})
+
+
+def test_a_progress_callable_cannot_use_the_reduced_model_at_work(reduced):
+    state = reduced.start()
+    with pytest.raises(pliant.InputError, match="the reduced model is at work: its progress cannot use it"):
+        reduced.exact(state, progress=lambda *_: reduced.estimate(state))

@@ -6,6 +6,7 @@ import os
 import pickle
 import subprocess
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -252,6 +253,42 @@ def test_a_program_resumes_from_its_checkpoint(tmp_path):
     resumed = model.run(checkpoint=tmp_path / "kept", resume=True)
     assert resumed.converged and np.array_equal(resumed[-1].positions, whole[-1].positions)
     resumed.remove_checkpoint()
+
+
+def test_a_state_can_be_read_while_another_thread_steps_it(tmp_path):
+    model = block()
+    state, rest = model.rest(), model.rest().inputs.values_SI
+    until, failed = time.monotonic() + 1, []
+
+    def read():
+        try:
+            while time.monotonic() < until:
+                model.jacobian(state)
+                state == state.copy()
+                state.save(tmp_path / f"{threading.get_ident()}.state")
+        except BaseException as error:
+            failed.append(error)
+
+    readers = [threading.Thread(target=read) for _ in range(2)]
+    for reader in readers:
+        reader.start()
+    k = 0
+    while time.monotonic() < until:
+        k += 1
+        model.step(state, rest * (0.9 + 0.01 * (k % 9)))
+    for reader in readers:
+        reader.join()
+    assert not failed
+
+
+def test_a_step_that_needs_no_iteration_gives_the_same_state_whatever_was_solved_before():
+    model = block()
+    lengths = model.rest().inputs.values_SI
+    first, later = model.rest(), model.rest()
+    assert model.step(first, lengths).iterations == 0
+    model.solve(0.9 * lengths)
+    assert model.step(later, lengths).iterations == 0
+    assert first == later and first.bytes() == later.bytes()
 
 
 def test_threads_share_a_model_and_get_the_same_bits(model):

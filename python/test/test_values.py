@@ -122,6 +122,9 @@ def test_a_mesh_keeps_copies_of_its_arrays():
     assert pliant.Model(pliant.Robot(BLOCK), mesh).node_count == 8
     with pytest.raises(ValueError):
         mesh.points[0, 0] = 1
+    for again in both(mesh):
+        with pytest.raises(ValueError, match="read-only"):
+            again.points[0, 0] = 1
 
 
 def test_found_of_a_workspace_is_an_array_of_truth_values(model):

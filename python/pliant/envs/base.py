@@ -90,6 +90,7 @@ class RobotEnv(_Base):  # type: ignore[misc]
             raise InputError(f'render_mode is None or "rgb_array", not {render_mode!r}')
         self.render_mode = render_mode
         self.model = self.make_model() if model is None else _check.instance(model, Model, "model")
+        self.check_model()
         self._low, self._high, self._kinds = self.ranges()
         count = len(self._low)
         self.action_space = box(-1.0, 1.0, (count,), np.float32)
@@ -103,6 +104,9 @@ class RobotEnv(_Base):  # type: ignore[misc]
     def make_model(cls) -> Model:
         """The robot of the task, meshed."""
         raise NotImplementedError
+
+    def check_model(self) -> None:
+        """Raises an InputError if :attr:`model` lacks something that the task needs."""
 
     def ranges(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, ...]]:
         """(actuators,) SI values at the first and the second end of each range, and the kinds of :class:`Drive`."""

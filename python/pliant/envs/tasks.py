@@ -31,6 +31,25 @@ def _within(value: Any, what: str, shape: tuple[int, ...], low: float, high: flo
     return found
 
 
+def _need(env: RobotEnv, there: bool, what: str) -> None:
+    if not there:
+        raise InputError(f"{type(env).__name__} needs {what}; the robot {env.model.robot.name!r} has none")
+
+
+def _need_two_cables(env: RobotEnv) -> None:
+    count = len(env.model.cables)
+    if count != 2:
+        raise InputError(f"{type(env).__name__} needs 2 cables; the robot {env.model.robot.name!r} has {count}")
+
+
+def _need_no_chambers(env: RobotEnv) -> None:
+    if env.model.chambers:
+        raise InputError(
+            f"{type(env).__name__} moves cables alone; the robot {env.model.robot.name!r} has chambers, too: "
+            f"{', '.join(env.model.chambers)}"
+        )
+
+
 class _Arm(RobotEnv):
     """An arm of 100 mm with three cables, held at one end. Lengths in observations are in units of 100 mm."""
 
@@ -61,6 +80,11 @@ class _Arm(RobotEnv):
                 ],
             )
         )
+
+    def check_model(self) -> None:
+        _need(self, "tip" in self.model.markers, 'a marker "tip"')
+        _need(self, bool(self.model.cables), "cables")
+        _need_no_chambers(self)
 
     def ranges(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, ...]]:
         # As tensions: three cables of given lengths would fight each other.
@@ -158,6 +182,10 @@ class _InTime(RobotEnv):
     #: m, largest pull of a cable
     most_m: ClassVar[float] = 0.004
 
+    def check_model(self) -> None:
+        _need_two_cables(self)
+        _need_no_chambers(self)
+
     def ranges(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, ...]]:
         lengths = self.model.rest().inputs.values_SI
         return lengths, lengths - self.most_m, ("length",) * len(lengths)
@@ -238,6 +266,10 @@ class Grasp(_InTime):
                 },
             )
         )
+
+    def check_model(self) -> None:
+        _need(self, "cube" in self.model.rest().observe().objects, 'an object "cube"')
+        super().check_model()
 
     def observation_size(self) -> int:
         return 11
@@ -327,6 +359,12 @@ class Crawl(_InTime):
                 },
             )
         )
+
+    def check_model(self) -> None:
+        count = len(self.model.markers)
+        if count != 3:
+            raise InputError(f"Crawl needs 3 markers; the robot {self.model.robot.name!r} has {count}")
+        super().check_model()
 
     def observation_size(self) -> int:
         return 8

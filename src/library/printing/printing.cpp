@@ -79,8 +79,11 @@ PrintPlan plan_job(const std::filesystem::path& job) {
     return plan_of(value_of(plan::make_plan(open.archive.manifest(), open.printer)));
 }
 
-std::vector<std::string> check_job(const std::filesystem::path& job) {
-    return value_of(operate::prove_job(job, operate::Pixels::areas)).warnings;
+std::vector<std::string> check_job(const std::filesystem::path& job, const Watch& watch) {
+    library::WatchedProgress progress(watch, "check");
+    auto proved = operate::prove_job(job, operate::Pixels::areas, nullptr, &progress);
+    progress.rethrow();
+    return value_of(std::move(proved)).warnings;
 }
 
 VirtualPrint print_virtually(const std::filesystem::path& job, const Watch& watch, const VirtualPrintOptions& options) {

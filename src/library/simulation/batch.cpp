@@ -68,14 +68,14 @@ void expect_count(std::size_t given, std::size_t robots, const char* what) {
 
 }  // namespace
 
-Batch::Batch(const std::vector<Model>& models, const StepOptions& options, int threads)
+Batch::Batch(const std::vector<Model>& models, const StepOptions& options, int threads, const Watch& watch)
     : work_(std::make_unique<Work>()) {
     if (threads < 0) throw Failure(Failure::Kind::input, "the number of threads is negative");
     const auto most = static_cast<int>(std::max<std::size_t>(models.size(), 1));
     work_->threads = std::min(threads > 0 ? threads : core_count(), most);
     std::vector<std::unique_ptr<Stepper>> made(models.size());
     on_each_core(
-        models.size(), [&](std::size_t i) { made[i] = std::make_unique<Stepper>(models[i], options); }, threads);
+        models.size(), [&](std::size_t i) { made[i] = std::make_unique<Stepper>(models[i], options); }, threads, watch);
     for (auto& stepper : made) work_->steppers.push_back(std::move(*stepper));
 }
 Batch::Batch(Batch&&) noexcept = default;

@@ -57,10 +57,15 @@ Status check_shared(const Manifest& m, std::size_t k, const std::vector<slice::R
 
 }  // namespace
 
-Status verify_images(const Archive& archive, bool corrected, const std::string& path, const PlatformEdge* edge) {
+Status verify_images(const Archive& archive, bool corrected, const std::string& path, const PlatformEdge* edge,
+                     Progress* progress) {
+    Progress silent;
+    Progress& told = progress != nullptr ? *progress : silent;
     const Manifest& m = archive.manifest();
     const double pixel_mm2 = m.pixel_um * m.pixel_um / 1e6;
     for (std::size_t k = 0; k < m.layers.size(); ++k) {
+        told.advance("images", static_cast<double>(k) / static_cast<double>(m.layers.size()));
+        if (told.cancelled()) return cancelled();
         std::vector<slice::RunImage> seen;
         for (const LayerImage& entry : m.layers[k].images) {
             const auto image = archive.image(entry.file);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/core/error.hpp"
+#include "base/core/progress.hpp"
 #include "printing/job/job.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/plan/plan.hpp"
@@ -29,8 +30,8 @@ enum class Pixels {
 /// Opens a job and verifies it: every entry against its hash, the images as `pixels` says, the program against manifest
 /// and printer (plan::prove_program). Nothing is printed without this check. Errors: one line that names file, entry or
 /// G-code line, and layer. A job of format 1 has no hashes, which gives a warning. With an `other` printer, the program
-/// must print the job on that one.
+/// must print the job on that one. `progress`, if not null, is told about entries and images, and can cancel.
 [[nodiscard]] Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels = Pixels::fingerprints,
-                                          const machine::Printer* other = nullptr);
+                                          const machine::Printer* other = nullptr, Progress* progress = nullptr);
 
 }  // namespace pliant::operate

@@ -24,6 +24,16 @@ public:
             return take_one(kind, spec.name, spec.line, fmt::format("{}_{}", spec.name, ending));
         });
     }
+    /// The name by which an actuator is driven. False if another actuator has it.
+    template <class Spec>
+    bool take_name(std::string_view kind, const Spec& spec) {
+        const auto [other, is_new] = driven_.emplace(spec.name, fmt::format("{} \"{}\"", kind, spec.name));
+        if (!is_new)
+            draft_.problem(
+                spec.line, kind, spec.name,
+                fmt::format("is driven by the same name as {}; give one of the two another name", other->second));
+        return is_new;
+    }
     /// The input of an actuator that the inverse moves.
     template <class Spec>
     void take_input(std::string_view kind, const Spec& spec) {
@@ -45,14 +55,17 @@ private:
 
     ModelDraft& draft_;
     std::map<std::string, std::string> owner_;
+    std::map<std::string, std::string> driven_;
 };
 
 void take_actuators(const Robot& robot, Columns& columns) {
     for (const CableSpec& c : robot.cables) {
-        if (columns.take("cable", c, sim::columns::cable)) columns.take_input("cable", c);
+        if (columns.take_name("cable", c) && columns.take("cable", c, sim::columns::cable))
+            columns.take_input("cable", c);
     }
     for (const ChamberSpec& c : robot.chambers) {
-        if (columns.take("chamber", c, sim::columns::chamber)) columns.take_input("chamber", c);
+        if (columns.take_name("chamber", c) && columns.take("chamber", c, sim::columns::chamber))
+            columns.take_input("chamber", c);
     }
     for (const SpringSpec& s : robot.springs) columns.take("spring", s, sim::columns::spring);
 }

@@ -52,6 +52,22 @@ TEST_CASE("a sensor, a spring or an obstacle whose column another thing has is r
           clash("obstacle \"base\"", "base_force_x_N", "fixed \"base\""));
 }
 
+TEST_CASE("a chamber named like a cable is refused: neither could be driven by its name") {
+    std::string hollow = cable_bar;
+    const std::string full = "{ box = [[0, 0, 0], [30, 10, 10]] }";
+    hollow.replace(hollow.find(full), full.size(),
+                   "{ difference = [" + full + ", { box = [[10, 3, 3], [20, 7, 7]] }] }");
+    const auto with_chamber = [&](const std::string& name) {
+        return problem(hollow + "[[chamber]]\nname = \"" + name +
+                       "\"\ninside = [15, 5, 5]\ntarget = { pressure = \"1 kPa\" }\n");
+    };
+    CHECK(
+        with_chamber("flexor") ==
+        "bar.toml:19: chamber \"flexor\": is driven by the same name as cable \"flexor\"; give one of the two another "
+        "name");
+    CHECK(with_chamber("air") == "");
+}
+
 TEST_CASE("one name for two things is allowed where their columns differ") {
     CHECK(problem(sensor("flexor", "kind = \"distance\"\npoints = [[1, 5, 5], [29, 5, 5]]\n")) == "");
     CHECK(problem(sensor("pull", "kind = \"tension\"\ncable = \"flexor\"\n")) == "");

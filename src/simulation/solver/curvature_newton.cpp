@@ -79,7 +79,10 @@ public:
         learnt_ = std::make_shared<const StepPair>(StepPair{step, change});
     }
 
+    /// Without a tangent there is nothing to carry over. What is left of an earlier program, as the last rotation, must
+    /// not get into it: equal steps give equal states.
     [[nodiscard]] std::shared_ptr<const SolverMemory> memory() const override {
+        if (!tangent_) return nullptr;
         auto memory = std::make_shared<SolverMemory>();
         memory->tangent = tangent_;
         if (inverse_->keeps_matrix()) memory->base = base();
