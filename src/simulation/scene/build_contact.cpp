@@ -87,7 +87,11 @@ Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const
     rules.settings.stiffness_Pa = spec.stiffness_Pa.value_or(stiffness_share * softest_Pa(robot));
     rules.settings.friction = spec.friction;
     for (const ObstacleSpec& obstacle : robot.obstacles) {
-        sim::contact::Obstacle body{obstacle.name, {}, obstacle.friction};
+        sim::contact::Obstacle body;
+        body.name = obstacle.name;
+        body.friction = obstacle.friction;
+        body.line = obstacle.line;
+        body.start_line = obstacle.start_line > 0 ? obstacle.start_line : obstacle.line;
         if (const auto* plane = std::get_if<PlaneSelector>(&obstacle.shape)) {
             body.shape = sim::contact::HalfSpace{robot.unit_m * plane->point, plane->normal / norm(plane->normal)};
         } else {
@@ -130,3 +134,4 @@ Status add_objects(const Robot& robot, sim::Description& description) {
 }
 
 }  // namespace pliant::robot
+        object.line = spec.line;
