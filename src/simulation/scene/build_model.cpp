@@ -143,6 +143,10 @@ Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mes
     if (draft.problems.empty()) check_columns(draft);
     if (!draft.problems.empty()) return tl::unexpected(error_of(Cause::input, draft.problems));
     description.notes = draft.notes_on_points();
+    if (description.contact) {
+        for (std::string& note : notes_on_contact(robot, draft.bodies, *description.contact))
+            description.notes.push_back(std::move(note));
+    }
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
     return std::move(description);
 }
