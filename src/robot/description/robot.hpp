@@ -226,6 +226,7 @@ struct ObstacleSpec {
     Vec3 move;  ///< length units
     Curve share = ramp(0, 1);
     int line = 0;
+    int start_line = 0;  ///< of the key at time 0 that moves it; 0: there is none
 };
 
 /// A free rigid body with mass.

@@ -23,6 +23,7 @@ struct Driven {
     double low = -1e300;  ///< values outside are refused
     double high = 1e300;
     std::function<void(Curve)> drive;
+    int* start_line = nullptr;  ///< receives the line of its key at time 0, if any; may be null
 };
 
 Driven driven(CableSpec& cable) {
@@ -78,7 +79,10 @@ std::vector<Driven> everything_driven(Robot& robot) {
     };
     for (LoadSpec& load : robot.loads) share(load.name, load.share);
     for (FixedSpec& fixed : robot.fixed) share(fixed.name, fixed.share);
-    for (ObstacleSpec& obstacle : robot.obstacles) share(obstacle.name, obstacle.share);
+    for (ObstacleSpec& obstacle : robot.obstacles) {
+        share(obstacle.name, obstacle.share);
+        list.back().start_line = &obstacle.start_line;
+    }
     share("gravity", robot.gravity_share);
     if (robot.program.dynamics) list.back().rest = 1;
     return list;
@@ -118,6 +122,7 @@ Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& times, co
         const double value = read_value(keys[k], d);
         if (times[k] <= 0) {
             curve.value[0] = value;
+            if (d.start_line != nullptr) *d.start_line = keys[k].line_of(d.name);
             continue;
         }
         if (times[k] <= curve.time.back()) continue;  // out of order: already reported

@@ -44,6 +44,8 @@ struct Obstacle {
     std::string name;
     std::variant<mesh::TriMesh, HalfSpace> shape;  ///< metres, at its rest place; a mesh has one node per point
     double friction = 0;                           ///< coefficient μ against the robot
+    Vec3 start_m{};                                ///< how far it has moved from there at the start
+    int line = 0, start_line = 0;  ///< of the file that draws it and moves it to its start, for errors; 0: unknown
 };
 
 struct Settings {
@@ -59,6 +61,7 @@ struct RigidPart {
     std::string name;
     int first = 0, end = 0;
     double friction = 0;  ///< coefficient; between two with a coefficient, the larger counts
+    int line = 0;         ///< of the file that draws it, for errors; 0: unknown
 };
 
 /// Two parts that are joined, and do not touch each other near the joint: rigid parts, or -1 for the rest of the robot.
@@ -102,8 +105,8 @@ struct Crossing {
 class Contact {
 public:
     /// `rest`: (3 robot nodes). `rigid`: parts of the robot's surface, ascending. `joined`: parts between which contact
-    /// is excluded. Errors: obstacles or rigid parts that touch or cross at rest what they may touch (standing on a
-    /// plane is allowed), invalid numbers.
+    /// is excluded. Errors: obstacles or rigid parts that touch or cross what they may touch, at rest or where
+    /// obstacles are at the start (standing on a plane is allowed), invalid numbers. They name lines, but no file.
     [[nodiscard]] static Result<Contact> create(Surface robot, std::vector<Obstacle> obstacles,
                                                 const Settings& settings, std::span<const double> rest,
                                                 std::vector<RigidPart> rigid = {}, std::vector<Joined> joined = {});
@@ -225,8 +228,14 @@ private:
     void make_sides(const Surface& robot);
     void number_parts(std::vector<RigidPart> rigid);
     [[nodiscard]] Status check_parts_at_rest() const;
-    /// Precondition: no surfaces cross at rest. Error: the robot, an object or a closed obstacle lies inside another.
-    [[nodiscard]] Status check_nothing_is_nested() const;
+    /// Whether the obstacles are where they are drawn, or where they are at the start.
+    enum class When { rest, start };
+    /// Errors as of create(). Precondition: the obstacles are not drawn in yet.
+    [[nodiscard]] Status check_beginning() const;
+    /// Error: an obstacle touches or crosses the robot or an object.
+    [[nodiscard]] Status check_obstacles(std::span<const double> x, When when) const;
+    /// Precondition: no surfaces cross at x. Error: the robot, an object or a closed obstacle lies inside another.
+    [[nodiscard]] Status check_nothing_is_nested(std::span<const double> x, When when) const;
     /// `a`, `b`: as part_of(), or -1 for obstacles.
     [[nodiscard]] bool parts_are_joined(int a, int b) const;
     [[nodiscard]] double reach(int obstacle, double apart_m) const;
@@ -240,7 +249,9 @@ private:
     struct Touched {
         int obstacle, part;  ///< part_of()
     };
-    [[nodiscard]] std::optional<Touched> obstacle_touched_at_rest() const;
+    [[nodiscard]] std::optional<Touched> obstacle_touched(std::span<const double> x) const;
+    /// What may be wrong with an obstacle that touches the robot where it is drawn, and what would be right.
+    [[nodiscard]] std::string advice_on(const Touched& touched) const;
     [[nodiscard]] std::string part_name(int part) const;
     [[nodiscard]] std::optional<Crossing> first_crossing(std::span<const double> x, bool self, bool at_rest) const;
     [[nodiscard]] bool edge_and_triangle_belong_together(std::span<const int, 5> nodes) const;

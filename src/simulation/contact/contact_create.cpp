@@ -38,6 +38,8 @@ Status check_triangles(std::span<const std::array<int, 3>> triangles, std::size_
 Status check_obstacle(const Obstacle& obstacle) {
     if (!(obstacle.friction >= 0) || !std::isfinite(obstacle.friction))
         return input_error("obstacle \"{}\": the coefficient of friction must be zero or more", obstacle.name);
+    if (!is_finite(obstacle.start_m))
+        return input_error("obstacle \"{}\": its place at the start is not a number", obstacle.name);
     if (const auto* plane = std::get_if<HalfSpace>(&obstacle.shape)) {
         if (!is_finite(plane->point) || !is_finite(plane->normal) || !(norm(plane->normal) > 0))
             return input_error("obstacle \"{}\": the normal must be a direction other than zero", obstacle.name);
@@ -111,13 +113,7 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
     contact.seen_m_ = std::max(seen_edges * mean_edge(robot, rest), seen_distances * settings.distance_m);
     contact.make_sides(robot);
     contact.add_obstacles();
-    if (const auto touched = contact.obstacle_touched_at_rest())
-        return input_error("obstacle \"{}\" touches or crosses {} at rest: leave a gap{}",
-                           contact.obstacles_[touched->obstacle].name, contact.part_name(touched->part),
-                           touched->part == 0 ? ", or hold the robot there" : "");
-    if (!contact.rigid_.empty())
-        if (auto status = contact.check_parts_at_rest(); !status) return tl::unexpected(status.error());
-    if (auto status = contact.check_nothing_is_nested(); !status) return tl::unexpected(status.error());
+    if (auto status = contact.check_beginning(); !status) return tl::unexpected(status.error());
     contact.draw_in_obstacles();
     contact.memory_ = std::make_shared<Memory>();  // what has been noted of the obstacles was of those not drawn in
     return contact;
@@ -145,6 +141,23 @@ void Contact::number_parts(std::vector<RigidPart> rigid) {
     for (std::size_t k = 0; k < rigid_.size(); ++k)
         std::fill(part_of_node_.begin() + rigid_[k].first, part_of_node_.begin() + rigid_[k].end,
                   static_cast<int>(k) + 1);
+}
+
+Status Contact::check_beginning() const {
+    Status status = check_obstacles(rest_, When::rest);
+    if (status && !rigid_.empty()) status = check_parts_at_rest();
+    if (status) status = check_nothing_is_nested(rest_, When::rest);
+    const auto is_moved = [](const Obstacle& obstacle) { return obstacle.start_m != Vec3{}; };
+    if (!status || std::ranges::none_of(obstacles_, is_moved)) return status;
+    std::vector<double> start = rest_;
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+        for (int node = first_node_[k]; node < first_node_[k + 1]; ++node) {
+            const Vec3 p = node_at(rest_, node) + obstacles_[k].start_m;
+            std::copy_n(&p.x, 3, start.begin() + 3 * static_cast<std::ptrdiff_t>(node));
+        }
+    }
+    status = check_obstacles(start, When::start);
+    return status ? check_nothing_is_nested(start, When::start) : status;
 }
 
 void Contact::draw_in_obstacles() {

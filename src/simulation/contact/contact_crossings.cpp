@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/core/boxes.hpp"
 #include "simulation/contact/contact_search.hpp"
 #include "simulation/contact/intersection.hpp"
 
@@ -52,26 +53,66 @@ std::optional<Crossing> Contact::crossing_at_rest() const {
     return found && found->obstacle < 0 ? found : std::nullopt;
 }
 
-std::optional<Contact::Touched> Contact::obstacle_touched_at_rest() const {
+std::optional<Contact::Touched> Contact::obstacle_touched(std::span<const double> x) const {
     std::optional<Touched> touched;
     visit_moving_sides([&](const Side& side) {
         for (const Plane& plane : planes_)
             for (const int point : side.surface.points)
-                if (dot(plane.normal, node_at(rest_, point) - node_at(rest_, plane.node)) < -touching_m_)
+                if (dot(plane.normal, node_at(x, point) - node_at(x, plane.node)) < -touching_m_)
                     touched = {plane.obstacle, part_of(point)};
     });
-    const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
+    const Search search(*this, x, {}, touching_m_, Search::What::pairs, false);
     const auto moving = [&](int a, int b) { return part_of(obstacle_of_node_[a] < 0 ? a : b); };
     const auto test = [&](const Search::Candidate& c, std::optional<Touched>& found) {
         const int obstacle = obstacle_of(c.nodes);
-        if (obstacle >= 0 && std::sqrt(c.squared_distance(rest_)) <= touching_m_)
+        if (obstacle >= 0 && std::sqrt(c.squared_distance(x)) <= touching_m_)
             found = {obstacle, moving(c.nodes[0], c.nodes[3])};
     };
     for (const auto& piece : search.run(std::optional<Touched>(), test)) touched = piece ? piece : touched;
-    const auto crossed = first_crossing(rest_, false, true);
+    const auto crossed = first_crossing(x, false, true);
     if (crossed && crossed->obstacle >= 0)
         touched = {crossed->obstacle, moving(crossed->edge[0], crossed->triangle[0])};
     return touched;
+}
+
+std::string Contact::advice_on(const Touched& touched) const {
+    constexpr double other_unit = 100;  // sizes that differ by more are rarely meant
+    const std::vector<int>& points =
+        side(touched.part == 0 ? 0 : static_cast<std::size_t>(touched.part) + 1).surface.points;
+    for (const Plane& plane : planes_) {
+        const auto is_behind = [&](int point) {
+            return dot(plane.normal, node_at(rest_, point) - node_at(rest_, plane.node)) <= touching_m_;
+        };
+        if (plane.obstacle == touched.obstacle && std::ranges::all_of(points, is_behind))
+            return fmt::format(
+                "all of it lies behind the plane, where the obstacle is solid; turn the normal round, to [{:.6g}, "
+                "{:.6g}, {:.6g}], or move the point",
+                0 - plane.normal.x, 0 - plane.normal.y, 0 - plane.normal.z);
+    }
+    Box3 part, obstacle;
+    for (const int point : points) part.add(node_at(rest_, point));
+    const auto k = static_cast<std::size_t>(touched.obstacle);
+    for (int node = first_node_[k]; node < first_node_[k + 1]; ++node) obstacle.add(node_at(rest_, node));
+    const double times = obstacle.diagonal() / part.diagonal();
+    const bool is_plane = std::holds_alternative<HalfSpace>(obstacles_[k].shape);
+    return fmt::format("leave a gap{}{}", touched.part == 0 ? ", or hold the robot there" : "",
+                       is_plane || (times < other_unit && times > 1 / other_unit)
+                           ? ""
+                           : fmt::format("; its size is {:.3g} times that of {}: is it drawn in another unit?", times,
+                                         part_name(touched.part)));
+}
+
+Status Contact::check_obstacles(std::span<const double> x, When when) const {
+    const auto touched = obstacle_touched(x);
+    if (!touched) return {};
+    const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(touched->obstacle)];
+    if (when == When::start)
+        return input_error_at("", obstacle.start_line,
+                              "obstacle \"{}\" touches or crosses {} at the start, where the key at time 0 moves it: "
+                              "leave a gap there",
+                              obstacle.name, part_name(touched->part));
+    return input_error_at("", obstacle.line, "obstacle \"{}\" touches or crosses {} at rest: {}", obstacle.name,
+                          part_name(touched->part), advice_on(*touched));
 }
 
 std::string Contact::part_name(int part) const {
@@ -80,8 +121,9 @@ std::string Contact::part_name(int part) const {
 
 Status Contact::check_parts_at_rest() const {
     const auto refused = [&](int a, int b) {
-        return input_error("{} touches or crosses {} at rest: leave a gap", part_name(std::max(part_of(a), part_of(b))),
-                           part_name(std::min(part_of(a), part_of(b))));
+        const auto [low, high] = std::minmax({part_of(a), part_of(b)});
+        return input_error_at("", rigid_[static_cast<std::size_t>(high) - 1].line,
+                              "{} touches or crosses {} at rest: leave a gap", part_name(high), part_name(low));
     };
     using Found = std::optional<std::array<int, 2>>;
     const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);

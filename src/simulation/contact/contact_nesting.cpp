@@ -32,13 +32,15 @@ std::vector<Vec3> point_of_each_piece(const mesh::TriMesh& surface) {
 /// Something with a surface at rest. Pieces and tree are computed when they are first needed: mostly never.
 class Solid {
 public:
-    Solid(std::string name, int part, mesh::TriMesh surface)
-        : name_(std::move(name)), part_(part), surface_(std::move(surface)) {
+    /// `line`: of the file that draws it, or moves it to its start; 0 for the robot.
+    Solid(std::string name, int line, int part, mesh::TriMesh surface)
+        : name_(std::move(name)), line_(line), part_(part), surface_(std::move(surface)) {
         for (const auto& t : surface_.triangles)
             for (const int p : t) box_.add(surface_.points[p]);
     }
 
     [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] int line() const { return line_; }
     [[nodiscard]] int part() const { return part_; }
     [[nodiscard]] bool is_obstacle() const { return part_ < 0; }
 
@@ -55,6 +57,7 @@ public:
 
 private:
     std::string name_;
+    int line_;
     int part_;  ///< as Contact::part_of(); -1: an obstacle
     mesh::TriMesh surface_;
     Box3 box_;
@@ -64,29 +67,37 @@ private:
 
 }  // namespace
 
-Status Contact::check_nothing_is_nested() const {
+Status Contact::check_nothing_is_nested(std::span<const double> x, When when) const {
     if (obstacles_.empty() && parts_.empty()) return {};  // the robot alone: nothing to compare it with
     std::vector<Solid> solids;
     int part = 0;
     visit_moving_sides([&](const Side& side) {
         mesh::TriMesh surface;
         surface.triangles = side.surface.triangles;
-        for (int i = 0; i < robot_nodes_; ++i) surface.points.push_back(node_at(rest_, i));
-        solids.emplace_back(part_name(part), part, std::move(surface));
+        for (int i = 0; i < robot_nodes_; ++i) surface.points.push_back(node_at(x, i));
+        solids.emplace_back(part_name(part), part == 0 ? 0 : rigid_[static_cast<std::size_t>(part) - 1].line, part,
+                            std::move(surface));
         ++part;
     });
-    for (const Obstacle& obstacle : obstacles_) {
-        const auto* surface = std::get_if<mesh::TriMesh>(&obstacle.shape);
-        if (surface != nullptr && mesh::check_closed(*surface))
-            solids.emplace_back("obstacle \"" + obstacle.name + "\"", -1, *surface);
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+        const Obstacle& obstacle = obstacles_[k];
+        const auto* drawn = std::get_if<mesh::TriMesh>(&obstacle.shape);
+        if (drawn == nullptr || !mesh::check_closed(*drawn)) continue;
+        mesh::TriMesh surface = *drawn;
+        for (std::size_t p = 0; p < surface.points.size(); ++p)
+            surface.points[p] = node_at(x, first_node_[k] + static_cast<int>(p));
+        solids.emplace_back("obstacle \"" + obstacle.name + "\"",
+                            when == When::start ? obstacle.start_line : obstacle.line, -1, std::move(surface));
     }
     for (Solid& outer : solids) {
         for (Solid& inner : solids) {
             const bool of_interest = &outer != &inner && !(outer.is_obstacle() && inner.is_obstacle()) &&
                                      !parts_are_joined(outer.part(), inner.part());
             if (of_interest && outer.holds(inner))
-                return input_error("{} begins inside {}, which is solid: move it out, or cut a hollow for it",
-                                   inner.name(), outer.name());
+                return input_error_at("", outer.is_obstacle() || inner.line() == 0 ? outer.line() : inner.line(),
+                                      "{} begins inside {}, which is solid{}: move it out, or cut a hollow for it",
+                                      inner.name(), outer.name(),
+                                      when == When::start ? ", where the key at time 0 moves the obstacle" : "");
         }
     }
     return {};

@@ -480,6 +480,47 @@ TEST_CASE("invalid settings and obstacles are refused by name") {
     refused({"it", mesh::TriMesh{{{-1, -1, 0.01}, {1, -1, 0.01}, {0, 1, 0.01}}, {{0, 1, 2}}}});
 }
 
+TEST_CASE("obstacles must leave a gap where they are at the start of the program, too, and errors name the lines") {
+    const SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    const auto error = [&](Obstacle obstacle, const Vec3& start_m) {
+        obstacle.start_m = start_m;
+        obstacle.line = 7, obstacle.start_line = 9;
+        const auto contact = Contact::create(make_surface(body.triangles), {std::move(obstacle)}, usual, body.rest);
+        return contact ? Error{Cause::input, "accepted"} : contact.error();
+    };
+    const auto check = [&](const Obstacle& obstacle, const Vec3& start_m, int line, const std::string& words) {
+        const Error found = error(obstacle, start_m);
+        CHECK_MESSAGE(found.message.find(words) != std::string::npos, found.message);
+        CHECK((found.problems.empty() ? 0 : found.problems[0].line) == line);
+    };
+    const auto box = [](const Vec3& corner, double size) {
+        const SpringBody drawn = spring_box(corner, {size, size, size}, {1, 1, 1});
+        mesh::TriMesh surface;
+        for (std::size_t i = 0; i < drawn.node_count(); ++i)
+            surface.points.push_back(node_at(drawn.rest, static_cast<int>(i)));
+        surface.triangles = drawn.triangles;
+        return surface;
+    };
+    const std::string start = "the robot at the start, where the key at time 0 moves it: leave a gap";
+    const Obstacle press{"it", HalfSpace{{0, 0, 0.0105}, {0, 0, -1}}};
+    check(press, {}, 0, "accepted");
+    check(press, {0, 0, -0.0004}, 0, "accepted");
+    check(press, {0, 0, 1}, 0, "accepted");
+    check(press, {0, 0, -0.0006}, 9, start);
+    check(press, {0, 0, -1}, 9, start);
+    const Obstacle block{"it", box({0.002, 0.002, 0.0105}, 0.004)};
+    check(block, {0, 0, -0.0004}, 0, "accepted");
+    check(block, {0, 0, -0.0006}, 9, start);
+    check(block, {0, 0, -0.0075}, 9,
+          "obstacle \"it\" begins inside the robot, which is solid, where the key at time 0");
+    check(block, {0, 0, -0.02}, 0, "accepted");  // beyond it
+    check({"it", HalfSpace{{0, 0, 0.005}, {0, 0, 1}}}, {}, 7, "at rest: leave a gap, or hold the robot there");
+    check({"it", HalfSpace{{0, 0, -0.001}, {0, 0, -1}}}, {}, 7,
+          "at rest: all of it lies behind the plane, where the obstacle is solid; turn the normal round, to [0, 0, 1], "
+          "or move the point");
+    check({"it", box({-1, -1, 0.005}, 2)}, {}, 7, "; its size is 200 times that of the robot: is it drawn in another");
+}
+
 TEST_CASE("solids that begin inside one another are refused, hollows are not") {
     const SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
     const auto box = [](double low, double high, bool inwards = false) {

@@ -338,7 +338,10 @@ Result<std::unique_ptr<contact::Contact>> create_contact(const Description& d, c
     std::vector<double> rest = nodes;
     points.append(nodes, rest);
     std::vector<contact::Obstacle> obstacles;
-    for (const Obstacle& obstacle : d.contact->obstacles) obstacles.push_back(obstacle.body);
+    for (const Obstacle& obstacle : d.contact->obstacles) {
+        obstacles.push_back(obstacle.body);
+        obstacles.back().start_m = obstacle.share.at(0) * obstacle.move_m;
+    }
     contact::Settings settings = d.contact->settings;
     settings.self = self;
     std::vector<contact::Joined> joined;

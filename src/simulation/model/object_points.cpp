@@ -15,7 +15,7 @@ ObjectPoints::ObjectPoints(std::span<const FreeObject> objects, std::span<const 
             body_.push_back(static_cast<int>(k));
             shares_.push_back(bodies[k].shares(linalg::vector(p)));
         }
-        parts_.push_back({objects[k].name, begin, first_ + count(), objects[k].friction});
+        parts_.push_back({objects[k].name, begin, first_ + count(), objects[k].friction, objects[k].line});
     }
 }
 

@@ -165,7 +165,7 @@ struct RigidPlate {
 
 /// A rigid body that the robot may touch; its position is rest + share * move.
 struct Obstacle {
-    contact::Obstacle body;
+    contact::Obstacle body;  ///< without its place at the start, which follows from the rest
     Vec3 move_m;
     Curve share = ramp(0, 1);
 };
@@ -180,6 +180,7 @@ struct FreeObject {
     double mass_kg = 0;
     Vec3 velocity_m_s{}, angular_velocity_rad_s{};  ///< initial velocities of a motion in time
     double friction = 0;  ///< coefficient against everything; if the other one has one too, the larger applies
+    int line = 0;         ///< of the file that draws it, for errors; 0: unknown
 };
 
 /// A point mass on the robot, without rotational inertia. A mass with inertia is represented by four of them.

@@ -262,6 +262,12 @@ private:
         return std::lower_bound(free_.begin(), free_.end(), part) - free_.begin();
     }
 
+    /// Without a unit, and without the rounding errors that would show as tiny parts or a minus zero.
+    [[nodiscard]] static std::string direction(const Eigen::Vector3d& along) {
+        const Eigen::Vector3d d = 1e-3 * (1e3 * along.normalized()).array().round() + 0.0;
+        return fmt::format("({:.3g}, {:.3g}, {:.3g})", d[0], d[1], d[2]);
+    }
+
     [[nodiscard]] static std::string show(const Vec3& p) {
         // A coordinate that is zero up to rounding is shown as zero.
         const auto mm = [](double m) { return std::fabs(m) < 1e-9 ? 0.0 : 1e3 * m; };
@@ -290,7 +296,7 @@ private:
         const Eigen::Vector3d speed = twist.head<3>();
         const Eigen::Vector3d turn = twist.tail<3>() / p.size;
         if (turn.norm() * p.size < 1e-6 * speed.norm())
-            return fmt::format("can slide freely along {}; hold it by a face", show(vec3(1e-3 * speed.normalized())));
+            return fmt::format("can slide freely along {}; hold it by a face", direction(speed));
         const Vec3 on = p.middle + vec3(turn.cross(speed) / turn.squaredNorm());
         const Vec3 other = on + vec3(0.5 * p.size * turn.normalized());
         return fmt::format(

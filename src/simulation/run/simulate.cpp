@@ -33,7 +33,7 @@ public:
 
     Trajectory run(Progress& progress) {
         begin();
-        for (int k = now_.step + 1; k <= program_.steps; ++k) {
+        for (int k = now_.step + 1; k <= program_.steps && now_.so_far.converged; ++k) {
             progress.advance("simulate", static_cast<double>(k - 1) / program_.steps);
             if (!go_to(k, progress)) break;
             now_.step = k;
@@ -55,6 +55,11 @@ private:
             for (Step& step : now_.so_far.steps) put_on_disk(step);
         } else {
             now_.robot = rest_;
+            const Evaluation& start = rest_.evaluation;
+            if (!start.possible()) {  // describe() needs forces, and nothing may follow from these
+                now_.robot.evaluation.out_of_balance = Eigen::VectorXd::Zero(rest_.x().size());
+                stop(0, fmt::format("the start {}", name(start.flaw)));
+            }
             now_.checks = checks_.state();
             now_.so_far.solver = name(stepper_.solvers().first());
             now_.so_far.warnings = warnings_at_rest(stepper_.model());

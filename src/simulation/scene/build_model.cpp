@@ -94,6 +94,14 @@ Status check_free_motion(const Robot& robot, sim::Description& description) {
     return {};
 }
 
+/// The model knows lines at most.
+Error in_file(const std::string& file, const Error& error) {
+    std::vector<Diagnostic> problems = error.problems;
+    if (problems.empty()) return {error.cause, file + ": " + error.message};
+    for (Diagnostic& problem : problems) problem.file = file;
+    return error_of(error.cause, std::move(problems));
+}
+
 }  // namespace
 
 Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mesh, sim::KeptPatches* kept) {
@@ -135,6 +143,10 @@ Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mes
     if (draft.problems.empty()) check_columns(draft);
     if (!draft.problems.empty()) return tl::unexpected(error_of(Cause::input, draft.problems));
     description.notes = draft.notes_on_points();
+    if (description.contact) {
+        for (std::string& note : notes_on_contact(robot, draft.bodies, *description.contact))
+            description.notes.push_back(std::move(note));
+    }
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
     return std::move(description);
 }
@@ -143,7 +155,7 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh, sim::Kept
     Result<sim::Description> description = build_description(robot, std::move(mesh), kept);
     if (!description) return tl::unexpected(description.error());
     Result<sim::Model> model = sim::Model::create(std::move(*description));
-    if (!model) return tl::unexpected(Error{model.error().cause, robot.file.string() + ": " + model.error().message});
+    if (!model) return tl::unexpected(in_file(robot.file.string(), model.error()));
     return model;
 }
 

@@ -346,13 +346,21 @@ TEST_CASE("impossible scenes give one line each") {
                         still),
                   "touches or crosses object \"it\" at rest: leave a gap");
     check_problem(object("geometry = { box = [[-295, 0, 0], [1, 1, 30]] }\nmass = \"1 g\""),
-                  "object \"it\" touches or crosses the robot at rest: leave a gap");
+                  "bar.toml:19: object \"it\" touches or crosses the robot at rest: leave a gap");
     check_problem(object("geometry = { box = [[0, 0, 0], [1, 1, 1]] }\nmass = \"1 g\"\n"
                          "[[object]]\nname = \"other\"\ngeometry = { box = [[1, 0, 0], [2, 1, 1]] }\nmass = \"1 g\""),
                   "object \"other\" touches or crosses object \"it\" at rest");
     check_problem(object("geometry = { box = [[-2, -2, -2], [3, 3, 3]] }\nmass = \"1 g\"\n"
                          "[[object]]\nname = \"core\"\ngeometry = { box = [[0, 0, 0], [1, 1, 1]] }\nmass = \"1 g\""),
                   "object \"core\" begins inside object \"it\", which is solid: move it out, or cut a hollow for it");
+    check_problem(world("[[obstacle]]\nname = \"press\"\nplane = { point = [0, 0, 30], normal = [0, 0, -1] }\n"
+                        "move = [0, 0, -15]\n",
+                        still + "[[program.key]]\ntime = \"0 s\"\npress = 1\n"),
+                  "bar.toml:28: obstacle \"press\" touches or crosses the robot at the start, where the key at time 0 "
+                  "moves it");
+    check_problem(world("", still, 1000),
+                  "bar.toml:17: contact.distance: 1e+03 mm is not possible: it is longer than the robot, 17.3 mm; "
+                  "usual is 0.017 mm");
     std::string loose = soft_cube(0, still);
     loose.erase(loose.find("[[obstacle]]"), loose.find("[[marker]]") - loose.find("[[obstacle]]"));
     check_problem(loose, "nothing is fixed; add [[fixed]]");
