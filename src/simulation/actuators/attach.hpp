@@ -94,7 +94,8 @@ public:
     /// patch: a moving-least-squares weight that reproduces every affine motion exactly (Lancaster and Salkauskas
     /// 1981). The patch stays on the point's side of a gap, is at least as large as the tet that holds the point, and
     /// uses at most 64 nodes. On a plane of symmetry it includes the mirror images of its nodes, as in the whole robot;
-    /// each node then has the weights of all its images, and the point stays in the plane.
+    /// each node then has the weights of all its images, and the point lies in the plane at rest; across it, it follows
+    /// its nodes.
     [[nodiscard]] Result<Attachment> spread(const Vec3& point, double radius, double tolerance,
                                             std::span<const SymmetryPlane> planes = {}) const;
 
