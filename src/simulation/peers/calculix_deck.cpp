@@ -257,6 +257,9 @@ private:
     Status springs() {
         int element = static_cast<int>(d_.mesh.tet_count());
         for (std::size_t c = 0; c < d_.cables.size(); ++c) {
+            const CableTarget& target = d_.cables[c].target;
+            const double tension = uN_per_N * (target.at(end_) + target.offset_at(end_));
+            if (!(tension > 0)) continue;  // it is slack: a cable does not push
             std::vector<int> path;
             for (const Attachment& point : d_.cables[c].points) {
                 path.push_back(cable_node(point));
@@ -265,7 +268,6 @@ private:
             const std::string set = cable_set(c);
             line("** cable \"{}\"\n*ELEMENT,TYPE=SPRINGA,ELSET={}", d_.cables[c].name, set);
             for (std::size_t s = 1; s < path.size(); ++s) line("{},{},{}", ++element, path[s - 1], path[s]);
-            const double tension = uN_per_N * (d_.cables[c].target.at(end_) + d_.cables[c].target.offset);
             line("*SPRING,NONLINEAR,ELSET={}", set);
             for (const double share : {0.0, 1.0}) {
                 for (const double elongation : {-spring_range_mm, spring_range_mm})

@@ -221,3 +221,16 @@ TEST_CASE("a deck holds the state at the end of the program, however long it is"
     CHECK(tension_at(1));
     CHECK(tension_at(4));
 }
+
+TEST_CASE("a deck has no cable whose offset takes away all of its tension: it is slack, and does not push") {
+    Description d = comparison::cable_finger(1, material::neo_hookean(5e6, 0.45), {CableTarget::Kind::tension_N, 3});
+    const auto has_cable = [&](double offset_N) {
+        d.cables[0].target.offset = offset_N;
+        const auto deck = calculix::deck(d);
+        REQUIRE(deck);
+        return deck->find("SPRING") != std::string::npos || deck->find("*TEMPERATURE") != std::string::npos;
+    };
+    CHECK(has_cable(-2));
+    CHECK_FALSE(has_cable(-3));
+    CHECK_FALSE(has_cable(-4));
+}
