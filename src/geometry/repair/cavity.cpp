@@ -1,5 +1,6 @@
 #include "geometry/repair/cavity.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -47,6 +48,14 @@ const SkinShell* smallest_around(const std::vector<SkinShell>& shells, const Vec
     return smallest != nullptr && smallest->volume < 0 ? smallest : nullptr;
 }
 
+std::vector<Face> picked(const std::vector<Face>& faces, const std::vector<bool>& picks) {
+    std::vector<Face> some;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        if (picks[f]) some.push_back(faces[f]);
+    }
+    return some;
+}
+
 }  // namespace
 
 Result<std::vector<Face>> cavity_faces(const TetMesh& mesh, const Vec3& point) {
@@ -65,11 +74,20 @@ Result<std::vector<Face>> cavity_faces(const TetMesh& mesh, const Vec3& point) {
         if (&shell != enclosing && !floats) continue;
         for (const std::size_t f : shell.faces) taken[f] = true;
     }
-    std::vector<Face> wall;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (taken[f]) wall.push_back(faces[f]);
+    return picked(faces, taken);
+}
+
+std::vector<Face> faces_from_outside(const TetMesh& mesh) {
+    std::vector<Face> faces = boundary_faces(mesh);
+    const std::vector<SkinShell> shells = shells_of(mesh, faces);
+    const auto is_cavity = [](const SkinShell& shell) { return shell.volume < 0; };
+    if (std::ranges::none_of(shells, is_cavity)) return faces;
+    std::vector<bool> reached(faces.size(), false);
+    for (const SkinShell& shell : shells) {
+        if (is_cavity(shell) || smallest_around(shells, shell.on_it, &shell) != nullptr) continue;
+        for (const std::size_t f : shell.faces) reached[f] = true;
     }
-    return wall;
+    return picked(faces, reached);
 }
 
 }  // namespace pliant::mesh

@@ -1,4 +1,4 @@
-// Closed cavities of a mesh (the air inside), found by a point.
+// Closed cavities of a mesh (the air inside): the one at a point, and the surface without any.
 #pragma once
 
 #include <vector>
@@ -12,5 +12,9 @@ namespace pliant::mesh {
 /// normals pointing into it, in the order of boundary_faces(). Errors: the point lies in the material, or the space
 /// around it is open to the outside. Cost: all faces.
 [[nodiscard]] Result<std::vector<Face>> cavity_faces(const TetMesh& mesh, const Vec3& point);
+
+/// The boundary_faces() that can be reached from outside: without those that bound closed cavities, and without bodies
+/// that float in one. Cost: all faces.
+[[nodiscard]] std::vector<Face> faces_from_outside(const TetMesh& mesh);
 
 }  // namespace pliant::mesh

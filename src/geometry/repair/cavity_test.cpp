@@ -68,6 +68,14 @@ TEST_CASE("bodies that float in a cavity bound it too, and their own cavities do
     REQUIRE(inner);
     CHECK(enclosed(*mesh, *inner) == near(64 - 8, {.relative = 1e-12}));
     CHECK(cavity_faces(*mesh, {5, 5, 5}).error().message.find("in the material") != std::string::npos);
+    CHECK(enclosed(*mesh, faces_from_outside(*mesh)) == near(-1000, {.relative = 1e-12}));
+}
+
+TEST_CASE("closed cavities cannot be reached from outside, open ones can") {
+    const TetMesh closed = house(false), open = house(true);
+    CHECK(enclosed(closed, faces_from_outside(closed)) == near(-1000, {.relative = 1e-12}));
+    const double shaft = 2 * 4;  // between the room and the outside
+    CHECK(enclosed(open, faces_from_outside(open)) == near(-1000 + 2 * 36 + shaft, {.relative = 1e-12}));
 }
 
 TEST_CASE("a point in material, outside, or in an open space is refused") {

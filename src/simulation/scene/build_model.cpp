@@ -1,9 +1,7 @@
 // Attaches what the robot file names by position (boxes, points, paths) to nodes of the mesh.
 #include "simulation/scene/build_model.hpp"
 
-#include <algorithm>
 #include <array>
-#include <set>
 #include <utility>
 
 #include "simulation/elements/actuated_space.hpp"
@@ -17,6 +15,7 @@
 #include "simulation/scene/build_places.hpp"
 #include "simulation/scene/build_sensors.hpp"
 #include "simulation/scene/column_clashes.hpp"
+#include "simulation/scene/outer_faces.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -42,25 +41,10 @@ void add_materials(ModelDraft& draft) {
     }
 }
 
-/// The surface of the bodies without the walls of chambers.
+/// The outer surface of the bodies as triangles: what the fluid reaches.
 std::vector<std::array<int, 3>> skin_of(const ModelDraft& draft) {
-    std::set<std::array<int, 3>> inside;  // corners of wall faces, ascending
-    for (const sim::Chamber& chamber : draft.description.chambers) {
-        for (const sim::WallFace& face : chamber.wall.faces) {
-            std::array<int, 3> corners{};
-            for (std::size_t i = 0; i < 3; ++i) {
-                const auto& nodes = chamber.wall.points[static_cast<std::size_t>(face[i])].nodes;
-                corners[i] = nodes.size() == 1 ? nodes[0] : -1;
-            }
-            std::ranges::sort(corners);
-            inside.insert(corners);
-        }
-    }
     std::vector<std::array<int, 3>> skin;
-    for (const mesh::Face& face : mesh::boundary_faces(draft.bodies)) {
-        std::array<int, 3> corners{face.nodes[0], face.nodes[1], face.nodes[2]};
-        std::ranges::sort(corners);
-        if (inside.contains(corners)) continue;
+    for (const mesh::Face& face : body_faces(draft).outer) {
         const auto& n = face.nodes;
         if (draft.bodies.order == 1)
             skin.push_back({n[0], n[1], n[2]});

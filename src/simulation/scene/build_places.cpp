@@ -16,6 +16,7 @@
 #include "geometry/mesh/mass_properties.hpp"
 #include "simulation/actuators/loads.hpp"
 #include "simulation/scene/object_points.hpp"
+#include "simulation/scene/outer_faces.hpp"
 #include "simulation/scene/symmetry_planes.hpp"
 
 namespace pliant::robot {
@@ -107,16 +108,20 @@ void add_plate(ModelDraft& draft, const PlateSpec& plate) {
     if (!nodes.empty()) draft.description.plates.push_back({plate.name, std::move(nodes)});
 }
 
-void add_load_on_faces(ModelDraft& draft, const LoadSpec& load, const Selector& selector) {
+void add_load_on_faces(ModelDraft& draft, const LoadSpec& load, const Selector& selector, const BodyFaces& of_bodies) {
     const std::size_t before = draft.problems.size();
     std::vector<bool> caught(draft.description.mesh.points.size(), false);
     for (const int node : caught_nodes(draft, selector, "load", load.name, load.line))
         caught[static_cast<std::size_t>(node)] = true;
     std::vector<mesh::Face> faces;
-    for (const mesh::Face& face : mesh::boundary_faces(draft.bodies)) {
-        const auto inside = [&](std::size_t i) { return caught[static_cast<std::size_t>(face.nodes[i])]; };
-        if (inside(0) && inside(1) && inside(2)) faces.push_back(face);
-    }
+    const auto select_from = [&](const std::vector<mesh::Face>& all) {
+        for (const mesh::Face& face : all) {
+            const auto inside = [&](std::size_t i) { return caught[static_cast<std::size_t>(face.nodes[i])]; };
+            if (inside(0) && inside(1) && inside(2)) faces.push_back(face);
+        }
+    };
+    select_from(of_bodies.outer);
+    if (faces.empty()) select_from(of_bodies.inner);
     if (draft.problems.size() > before) return;
     if (faces.empty()) {
         const bool box = std::holds_alternative<BoxSelector>(selector);
@@ -223,8 +228,9 @@ const Thing* find_rigid(ModelDraft& draft, const LoadSpec& load, std::string_vie
     return nullptr;
 }
 
-void add_load(ModelDraft& draft, const sim::Attacher& attacher, const LoadSpec& load) {
-    if (const auto* selector = std::get_if<Selector>(&load.place)) return add_load_on_faces(draft, load, *selector);
+void add_load(ModelDraft& draft, const sim::Attacher& attacher, const LoadSpec& load, const BodyFaces& of_bodies) {
+    if (const auto* selector = std::get_if<Selector>(&load.place))
+        return add_load_on_faces(draft, load, *selector, of_bodies);
     if (const auto* nodes = std::get_if<LoadOnNodes>(&load.place))
         return add_load_on_nodes(draft, load, nodes->selector);
     if (const auto* points = std::get_if<LoadPoints>(&load.place))
@@ -370,7 +376,10 @@ void add_plates(ModelDraft& draft) {
 }
 
 void add_loads(ModelDraft& draft, const sim::Attacher& attacher) {
-    for (const LoadSpec& load : draft.robot.loads) add_load(draft, attacher, load);
+    const auto on_faces = [](const LoadSpec& load) { return std::holds_alternative<Selector>(load.place); };
+    BodyFaces of_bodies;
+    if (std::ranges::any_of(draft.robot.loads, on_faces)) of_bodies = body_faces(draft);
+    for (const LoadSpec& load : draft.robot.loads) add_load(draft, attacher, load, of_bodies);
 }
 
 void add_loads_on_objects(ModelDraft& draft) {

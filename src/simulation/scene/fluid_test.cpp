@@ -6,6 +6,9 @@
 #include <numbers>
 
 #include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "geometry/files/surface_file.hpp"
+#include "geometry/mesh/test_shapes.hpp"
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
@@ -97,6 +100,50 @@ TEST_CASE("a floating block displaces water of its weight, at equilibrium and in
                              "duration = \"2 s\"\ntime_step = \"10 ms\"\nmass_damping = 10\n" + down));
     CHECK(floats.steps.back().objects[0].position_m.z == near(8e-3, {.absolute = 0.01e-3}));
     CHECK(floats.steps.back().kinetic_energy_J < 1e-9);
+}
+
+TEST_CASE("a fluid does not enter closed cavities, whether they are chambers or not") {
+    // A cube of 12 mm as heavy as the water of its material, with a cavity of 6 mm: the water lifts it by that.
+    const auto cube = [](const std::string& geometry, const std::string& chamber) {
+        return run_text(R"(
+name = "cube"
+length_unit = "mm"
+[material.m]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0.3
+density = "1000 kg/m^3"
+[[body]]
+name = "b"
+material = "m"
+geometry = )" + geometry +
+                        R"(
+[mesh]
+size = "4 mm"
+[[fixed]]
+name = "floor"
+plane = { point = [0, 0, 0], normal = [0, 0, 1] }
+[fluid]
+density = "1000 kg/m^3"
+)" + chamber + "\n[program]\nsteps = 1\ntolerance = 1e-7\n" +
+                        down)
+            .steps.back()
+            .supports[0]
+            .force_N.z;
+    };
+    const std::string solid = "{ box = [[0, 0, 0], [12, 12, 12]] }";
+    const std::string hole = "{ box = [[3, 3, 3], [9, 9, 9]] }";
+    const std::string hollow = "{ difference = [" + solid + ", " + hole + "] }";
+    const auto chamber = [](const std::string& air) {
+        return "[[chamber]]\nname = \"air\"\ntarget = { pressure = \"0 kPa\" }\n" + air + "\n";
+    };
+    const double lift = -1000 * g * 6e-3 * 6e-3 * 6e-3;
+    CHECK(cube(solid, chamber("geometry = " + hole)) == near(lift, {.relative = 2e-3}));
+    CHECK(cube(hollow, chamber("inside = [6, 6, 6]")) == near(lift, {.relative = 2e-3}));
+    CHECK(cube(hollow, "") == near(lift, {.relative = 2e-3}));
+    const test::Folder folder("fluid_in_cavities");  // the mesh need not match a surface
+    REQUIRE(mesh::write_stl(folder.path() / "cavity.stl", mesh::test::cube({3, 3, 3}, 6)));
+    const std::string surface = fmt::format("surface = \"{}\"", (folder.path() / "cavity.stl").string());
+    CHECK(cube(hollow, chamber(surface)) == near(lift, {.relative = 2e-3}));
 }
 
 TEST_CASE("an object lighter than the displaced fluid rises, and a held one pulls with the difference") {

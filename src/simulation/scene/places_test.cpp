@@ -148,6 +148,38 @@ TEST_CASE("a load acts on the outer faces that its selector chooses") {
     check_problem(eighth + pull + "surface = \"nowhere.stl\"\n", "there is no file");
 }
 
+TEST_CASE("a load leaves out the walls of chambers and cavities, unless its selector holds nothing else") {
+    const auto all_at = [](const std::string& body, const std::string& chamber, const std::string& load,
+                           double height) {
+        const std::string text = block_head + R"(mesh = { size = "4 mm", order = 1 }
+fixed = [{ name = "floor", box = [[0, 0, 0], [10, 10, 0]] }]
+body = [{ name = "block", material = "soft", geometry = )" +
+                                 body + " }]\n" + chamber + "load = [{ name = \"l\", pressure = \"1 kPa\", " + load +
+                                 " }]\n";
+        const Built built = build_text(text);
+        const sim::Description& d = built.model.description();
+        const sim::Wall& wall = d.pressures.at(0).wall;
+        return std::ranges::all_of(wall.points, [&](const sim::Attachment& point) {
+            const Vec3& p = d.mesh.points[static_cast<std::size_t>(point.nodes.at(0))];
+            const double from_middle = std::max({std::fabs(p.x - 5e-3), std::fabs(p.y - 5e-3), std::fabs(p.z - 5e-3)});
+            return std::fabs(from_middle - height) < 1e-9;
+        });
+    };
+    const std::string solid = "{ box = [[0, 0, 0], [10, 10, 10]] }", hole = "{ box = [[3, 3, 3], [7, 7, 7]] }";
+    const std::string hollow = "{ difference = [" + solid + ", " + hole + "] }";
+    const std::string drawn =
+        "chamber = [{ name = \"air\", target = { pressure = \"0 kPa\" }, geometry = " + hole + " }]\n";
+    const std::string inside =
+        "chamber = [{ name = \"air\", target = { pressure = \"0 kPa\" }, inside = [5, 5, 5] }]\n";
+    const auto check = [&](const std::string& body, const std::string& chamber) {
+        CHECK(all_at(body, chamber, "box = [[-1, -1, -1], [11, 11, 11]]", 5e-3));
+        CHECK(all_at(body, chamber, "box = [[2, 2, 2], [8, 8, 8]]", 2e-3));
+    };
+    check(solid, drawn);
+    check(hollow, inside);
+    check(hollow, "");
+}
+
 TEST_CASE("mesh and surface files can be scaled, mirrored, rotated, moved and repeated") {
     const test::Folder folder("placed");
     const Built once = build_text(eighth);
