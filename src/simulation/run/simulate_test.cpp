@@ -458,6 +458,29 @@ TEST_CASE("with friction the same length needs more tension when pulling, and le
     CHECK(let_go < 0.97 * let_go_free);
 }
 
+TEST_CASE("a cable with friction that is held keeps the tension that it was left with, pulled or released") {
+    const auto steps = [](CableTarget::Kind kind, const Curve& keys) {
+        Description d = bar(2);
+        CableTarget target{kind, keys.value.back()};
+        target.keys = keys;
+        d.cables = {flexor(d.mesh, target)};
+        d.cables[0].friction = 0.4;
+        Trajectory result = solve(d, {.steps = 6, .duration = 3, .tolerance = 1e-6});
+        REQUIRE_MESSAGE(result.converged, result.message);
+        return std::move(result.steps);
+    };
+    const auto check = [&](CableTarget::Kind kind, double rest, double pulled, double released) {
+        const auto held_pulled = steps(kind, Curve{{0, 1, 3}, {rest, pulled, pulled}});
+        const auto held_released = steps(kind, Curve{{0, 1, 2, 3}, {rest, pulled, released, released}});
+        for (const auto* held : {&held_pulled, &held_released}) {
+            CHECK((*held)[6].cables[0].tension_N == near((*held)[4].cables[0].tension_N, {.relative = 1e-4}));
+            CHECK((*held)[6].cables[0].length_m == near((*held)[4].cables[0].length_m, {.relative = 1e-5}));
+        }
+    };
+    check(CableTarget::Kind::length_ratio, 1, 0.85, 0.9);
+    check(CableTarget::Kind::tension_N, 0, 1.5, 1);
+}
+
 TEST_CASE("rounding forces on an unloaded body count as balance, a load of a nanonewton does not") {
     for (const int order : {1, 2}) {
         Description d = bar(order);

@@ -53,6 +53,17 @@ double inertia_rounding(const Model& model, const Inertia& inertia, const Eigen:
     return 2e-16 * inertia.rate() * inertia.rate() * std::sqrt(squared);
 }
 
+/// Whether a cable is let go on the way from one drive to another. Where the drive stays, so does the direction of the
+/// last change, which the tensions show: `shares` frozen before, that of the pulled end being 1; without any it pulls.
+bool lets_go(const Cable& cable, const std::vector<double>& shares, const Drive& before, const Drive& wanted) {
+    constexpr double rounding = 1e-12;
+    const double change = wanted.value - before.value;
+    const double largest = std::max(std::fabs(wanted.value), std::fabs(before.value));
+    if (wanted.kind == before.kind && std::fabs(change) > rounding * largest)
+        return wanted.kind == Drive::Kind::measure ? change > 0 : change < 0;
+    return !shares.empty() && (cable.pulled_at_first ? shares.back() : shares.front()) > 1;
+}
+
 Evaluation impossible(double min_J, Flaw flaw) {
     Evaluation e;
     e.min_J = min_J;
@@ -238,11 +249,10 @@ void Equilibrium::freeze_cable_friction(const Eigen::VectorXd& x, std::span<cons
     for (std::size_t c = 0; c < cables.size(); ++c) {
         if (!(cables[c].friction > 0)) continue;
         const Drive& wanted = all_wanted[c];
-        const double change = wanted.value - before[c].value;
         const bool by_length = wanted.kind == Drive::Kind::measure;
-        const bool let_go = by_length ? change > 0 : change < 0;
         const CablePath& path = actuators_[c].cable();
-        const double friction = let_go ? -cables[c].friction : cables[c].friction;
+        const double friction =
+            lets_go(cables[c], controls.shares[c], before[c], wanted) ? -cables[c].friction : cables[c].friction;
         controls.shares[c] = path.tension_shares(view(x), friction, cables[c].pulled_at_first);
         if (!by_length) continue;
         const double weighted = path.length(view(x), controls.shares[c]);

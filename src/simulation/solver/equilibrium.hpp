@@ -122,7 +122,7 @@ public:
     [[nodiscard]] Drive drive(std::size_t actuator, double target) const;
     /// Tension shares of all cables with friction at positions x, on the path from the drives `before` to the `wanted`
     /// ones, (actuators) each; and, for cables driven by length, the weighted length at x that corresponds to the
-    /// prescribed true length.
+    /// prescribed true length. Cables whose drive stays drag in the direction of the shares that `controls` has so far.
     void freeze_cable_friction(const Eigen::VectorXd& x, std::span<const Drive> wanted, std::span<const Drive> before,
                                Controls& controls) const;
     /// Largest error of the true lengths of cables with friction, relative to rest.

@@ -93,6 +93,7 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
     const std::vector<Drive> wanted = controls.drives;
     const bool cables_drag = system.has_cable_friction(), rubs = cables_drag || system.has_friction();
     const bool in_rounds = rubs || !controls.object_stress.empty();
+    controls.shares = start.controls.shares;
     if (cables_drag) system.freeze_cable_friction(next.x, wanted, start.drives, controls);
     controls.friction = system.freeze_friction(start.state, start.state, start.controls, start.controls);
     if (rubs) known.reset();
