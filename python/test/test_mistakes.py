@@ -194,10 +194,10 @@ MISTAKES = {
         "cable \"flexor\": shortening: the text has '\\ud800'",
     ),
     "a path has half a character": (lambda m: pliant.plan("\ud800.zip"), "job has '\\ud800'"),
-    "a path is not UTF-8": (lambda m: pliant.plan(os.fsdecode(b"no\xff.zip")), ".zip: no such file"),
+    "a path is not UTF-8": (lambda m: pliant.plan(os.fsdecode(b"no\xff.zip")), "no\ufffd.zip: no such file"),
     "a file to slice is not UTF-8": (
         lambda m: pliant.slice(os.fsdecode(b"no\xff.toml"), "no.zip", printer="examples/printers/tower.toml"),
-        ".toml: ",
+        "no\ufffd.toml: ",
     ),
     "a resin is None": (
         lambda m: pliant.slice("no.toml", "no.zip", printer="no.toml", resins={"soft": None}),

@@ -107,7 +107,7 @@ TEST_CASE("the inputs begin with one for each cable, then one for each chamber")
         body = [{ name = "bar", material = "soft", geometry = { difference = [
             { box = [[0, 0, 0], [30, 10, 10]] }, { box = [[5, 3, 3], [25, 7, 7]] }] } }]
         fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
-        chamber = [{ name = "left", inside = [15, 5, 5], target.volume_ratio = 1.1 }]
+        chamber = [{ name = "air", inside = [15, 5, 5], target.volume_ratio = 1.1 }]
         cable = [{ name = "left", points = [[0, 5, 9], [30, 5, 9]], target.shortening = "1 mm" },
                  { name = "right", points = [[0, 5, 1], [30, 5, 1]], target.tension = "1 N" }]
     )"));
@@ -115,7 +115,7 @@ TEST_CASE("the inputs begin with one for each cable, then one for each chamber")
     REQUIRE(at.inputs().size() >= 3);
     CHECK(at.inputs()[0].name == "cable \"left\": length");
     CHECK(at.inputs()[1].name.starts_with("cable \"right\": "));
-    CHECK(at.inputs()[2].name.starts_with("chamber \"left\": "));
+    CHECK(at.inputs()[2].name.starts_with("chamber \"air\": "));
 }
 
 TEST_CASE("wrong requests are refused with the reason") {

@@ -269,8 +269,9 @@ State ReducedStepper::exact(const ReducedState& state, const Watch& watch) {
     library::WatchedProgress progress(watch, "exact state");
     sim::reduced::ErrorEstimator& estimator = work_->whole().estimator;
     auto robot = estimator.exact(at, estimator.estimate(at), progress);
+    const bool stopped = progress.cancelled();  // which asks once more
     progress.rethrow();
-    if (progress.cancelled()) library::check(cancelled());
+    if (stopped) library::check(cancelled());
     if (!robot) throw Failure(Failure::Kind::failed, "no equilibrium of the whole robot was found at these inputs");
     return State(std::make_shared<const State::Data>(State::Data{work_->model->whole.data(), std::move(*robot)}));
 }

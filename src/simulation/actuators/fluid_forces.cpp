@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/actuators/cross_matrix.hpp"
 
@@ -118,7 +119,7 @@ void FluidForces::visit_buoyancy(std::span<const double> x, const Gravity& gravi
     if (weight.N_m3 == 0) return;
     for (const auto& t : skin_) {
         Matrix9 H = second_change(weight, sunk(weight, corners(x, t)));
-        if (project) H = linalg::with_positive_eigenvalues(H);
+        if (project) H = linalg::positive_part(0.5 * (H + H.transpose()));
         for (Eigen::Index i = 0; i < 3; ++i) {
             for (Eigen::Index j = 0; j < 3; ++j)
                 visit(t[static_cast<std::size_t>(i)], t[static_cast<std::size_t>(j)], H.block<3, 3>(3 * i, 3 * j));

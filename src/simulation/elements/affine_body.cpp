@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/node_blocks.hpp"
 
@@ -127,7 +128,7 @@ void AffineBody::add_blocks(const std::function<Matrix3(const Matrix3&)>& change
         const Matrix3 dP = change(dA);
         H.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dP.data());
     }
-    if (project) H = linalg::with_positive_eigenvalues(H);
+    if (project) H = linalg::positive_part(0.5 * (H + H.transpose()));
     add_node_blocks(nodes_, index, pattern, values, [&](std::size_t a, std::size_t b) {
         Matrix3 block = Matrix3::Zero();
         for (int k = 0; k < 3; ++k) {

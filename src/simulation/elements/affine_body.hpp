@@ -28,7 +28,7 @@ public:
     /// forces (3n) += gradient of the energy.
     void add_gradient(std::span<const double> x, std::span<double> forces) const;
     /// For a pattern (block 3) that holds all pairs of its nodes; `index` (n) of each node in it, or -1. `project`: the
-    /// matrix without negative eigenvalues, linalg::with_positive_eigenvalues().
+    /// nearest matrix without negative eigenvalues.
     void add_hessian(std::span<const double> x, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                      std::span<double> values, bool project) const;
     void append_clique(const std::vector<int>& index, linalg::Lists& cliques) const;

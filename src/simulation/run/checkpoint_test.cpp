@@ -144,7 +144,8 @@ TEST_CASE("a random program resumed after any step gives the same bits") {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         sim::test::RandomProgram made = sim::test::random_program(seed);
         made.program.steps = 5;
-        CAPTURE(sim::test::described(made));
+        const std::string program = sim::test::described(made);
+        CAPTURE(program);
         const Model model = model_of(std::move(made.robot));
         const Trajectory never_stopped = run_silently(model, made.program);
         for (const int last : {1, 3}) {

@@ -56,7 +56,7 @@ public:
     /// Of some actuators, on the free nodes: (3 free, actuators) at the positions `x` (3n).
     struct Forces {
         const std::vector<Eigen::Index>& actuators;
-        std::function<Eigen::MatrixXd(const Eigen::VectorXd& x)> at;
+        std::function<Eigen::MatrixXd(const Eigen::VectorXd& x, const Controls& controls)> at;
     };
     /// The same for all states at which this H is used, since it only serves to find the multipliers: then the forces
     /// are those at the state at which H was made. Called after solve(). Null: solve for the forces at each state.

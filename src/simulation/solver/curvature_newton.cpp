@@ -155,7 +155,7 @@ public:
         const YieldingOf of{tangent_, share_, inverse_->memory().in_double, forces.actuators};
         if (of == yielding_of_) return &yielding_;
         yielding_of_ = {};
-        const Eigen::MatrixXd B = forces.at(tangent_->state.x);
+        const Eigen::MatrixXd B = forces.at(tangent_->state.x, tangent_->controls);
         yielding_.motions = B;
         if (!inverse_->solve_plainly(yielding_.motions, largest_solution_error)) return nullptr;
         yielding_.compliance = B.transpose() * yielding_.motions;

@@ -170,7 +170,7 @@ TEST_CASE("the body's responses to constraints are kept for one factor and one s
     newton->solve(gradient);
     int asked = 0;
     const auto yielding_to = [&](const std::vector<Eigen::Index>& actuators) {
-        const auto forces = [&](const Eigen::VectorXd& x) {
+        const auto forces = [&](const Eigen::VectorXd& x, const Controls&) {
             ++asked;
             Eigen::MatrixXd columns(3 * model->free_count(), static_cast<Eigen::Index>(actuators.size()));
             for (std::size_t k = 0; k < actuators.size(); ++k) {
@@ -183,7 +183,7 @@ TEST_CASE("the body's responses to constraints are kept for one factor and one s
         };
         const Curvature::Yielding* yielding = newton->yielding_to({actuators, forces});
         REQUIRE(yielding != nullptr);
-        Eigen::MatrixXd expected = forces(state.x);
+        Eigen::MatrixXd expected = forces(state.x, controls);
         --asked;
         newton->solve(expected);
         CHECK((yielding->motions - expected).norm() < 1e-3 * expected.norm());

@@ -76,16 +76,17 @@ private:
                                            std::span<const double>) const;
     /// Of the actuators with unknown multipliers, on free nodes: (3 free, solved), divided by the measure at rest.
     [[nodiscard]] Eigen::MatrixXd gradients_of(AddGradient add_gradient) const {
-        return gradients_of(add_gradient, state_.x);
+        return gradients_of(add_gradient, state_.x, controls_);
     }
-    [[nodiscard]] Eigen::MatrixXd gradients_of(AddGradient add_gradient, const Eigen::VectorXd& x) const {
+    [[nodiscard]] Eigen::MatrixXd gradients_of(AddGradient add_gradient, const Eigen::VectorXd& x,
+                                               const Controls& controls) const {
         Eigen::MatrixXd gradients(3 * system_.model().free_count(), solved_.count());
         for (Eigen::Index k = 0; k < solved_.count(); ++k) {
             Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
             const Eigen::Index a = solved_.actuators()[static_cast<std::size_t>(k)];
             const Actuator& one = actuator(a);
             (one.*add_gradient)(view(x), 1 / one.rest_measure(), view(full),
-                                controls_.shares[static_cast<std::size_t>(a)]);
+                                controls.shares[static_cast<std::size_t>(a)]);
             gradients.col(k) = system_.restrict_to_free(full);
         }
         return gradients;
@@ -147,8 +148,10 @@ private:
         if (solved_.count() < several) return with(by_each);
         Eigen::MatrixXd gradient = terms.gradient;
         curvature_.solve(gradient);
-        const Curvature::Yielding* yielding = curvature_.yielding_to(
-            {solved_.actuators(), [&](const Eigen::VectorXd& x) { return gradients_of(&Actuator::add_gradient, x); }});
+        const Curvature::Yielding* yielding =
+            curvature_.yielding_to({solved_.actuators(), [&](const Eigen::VectorXd& x, const Controls& controls) {
+                                        return gradients_of(&Actuator::add_gradient, x, controls);
+                                    }});
         if (yielding == nullptr) return with(by_each);
         return with([&](const auto& some) { return solve_with(*yielding, terms, gradient, some); });
     }
