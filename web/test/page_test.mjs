@@ -736,7 +736,7 @@ test('an invalid option is reported at its field; supports, bonds and exposure r
   const before = await page.evaluate(() => window.pliant.job.value.revision);
   await page.getByTestId('slice').click();
   await page.waitForFunction((r) => window.pliant.job.value.revision > r, before);
-  const file = Buffer.from(await page.evaluate(async () => Array.from(new Uint8Array(await (await fetch('/api/job/file')).arrayBuffer()))));
+  const file = await (await page.request.get(`${studio.address}api/job/file`)).body();
   const settings = JSON.parse(unzipped(file, 'settings.json'));
   assert.equal(settings.supports.support_tip, '0.6 mm');
   assert.equal(settings.supports.lift, '3 mm');

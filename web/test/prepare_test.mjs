@@ -21,6 +21,8 @@ size = "6 mm"
 name = "foot"
 box = [[12, 7, 0], [18, 13, 0]]
 `;
+/// The same with a column four times as high.
+const tall = table.replace('"table"\nlength', '"tall"\nlength').replace('18, 13, 10]', '18, 13, 40]').replace('[0, 0, 10], [30, 20, 13]', '[0, 0, 40], [30, 20, 43]');
 
 let browser;
 let studio;
@@ -43,19 +45,20 @@ const post = (page, path, body) =>
     [path, body],
   );
 
-async function withTable(t) {
-  const opened = await openPage(browser, `${studio.address}#make`, t, { viewport: { width: 1280, height: 800 } });
-  await post(opened.page, '/api/open', { name: 'table.toml' });
-  await opened.page.waitForFunction(() => document.querySelector('[data-testid=open] .title').textContent === 'table', undefined, { timeout: 90_000 });
+async function withRobot(t, of, name) {
+  const opened = await openPage(browser, `${of.address}#make`, t, { viewport: { width: 1280, height: 800 } });
+  await post(opened.page, '/api/open', { name: `${name}.toml` });
+  await opened.page.waitForFunction((n) => document.querySelector('[data-testid=open] .title').textContent === n, name, { timeout: 90_000 });
   return opened;
 }
+const withTable = (t) => withRobot(t, studio, 'table');
 const revision = (page) => page.evaluate(() => window.pliant.job.value?.revision ?? 0);
 async function slice(page) {
   const before = await revision(page);
   await page.getByTestId('slice').click();
   await page.waitForFunction((b) => (window.pliant.job.value?.revision ?? 0) > b && !window.pliant.slicing?.value, before, { timeout: 120_000 });
 }
-const jobFile = (page) => page.evaluate(async () => Array.from(new Uint8Array(await (await fetch('/api/job/file')).arrayBuffer()))).then((b) => Buffer.from(b));
+const jobFile = async (page) => (await page.request.get(`${studio.address}api/job/file`)).body();
 
 test('painted supports can be enforced, blocked and erased, and the job keeps them', async (t) => {
   const { page, wrong } = await withTable(t);
@@ -148,7 +151,12 @@ test('the slicer moves, scales and copies the part as the platform view shows it
 });
 
 test('the first layers of a large job are shown while it is being sliced', async (t) => {
-  const { page, wrong } = await withTable(t);
+  // A studio of its own, whose form no earlier job has filled, and so many layers that they last half a minute: the
+  // browser may need seconds for its first picture.
+  const other = await startStudio();
+  t.after(() => other.stop());
+  writeFileSync(join(other.folder, 'tall.toml'), tall);
+  const { page, wrong } = await withRobot(t, other, 'tall');
   await page.getByTestId('option-layer').fill('1');
   await page.getByTestId('slice').click();
   await page.waitForSelector('[data-testid=under-way] canvas', { timeout: 120_000 });
@@ -156,11 +164,13 @@ test('the first layers of a large job are shown while it is being sliced', async
   assert.match(await page.getByTestId('under-way').innerText(), /of \d{5} layers/);
   await page.getByTestId('cancel-slice').click();
   await page.getByTestId('slice').waitFor({ timeout: 60_000 });
+  assert.equal(await revision(page), 0, 'cancelled, not finished');
   assert.deepEqual(wrong, []);
 });
 
 test('the colour of a resin is chosen on the page, and kept in the robot file and in the job', async (t) => {
   const { page, wrong } = await withTable(t);
+  await page.getByTestId('option-layer').fill('500');
   await page.getByTestId('group-exposure').locator('summary').click();
   await page.getByTestId('colour-of-soft').fill('#12ab34');
   await page.waitForFunction(() => window.pliant.scene.value?.head.materials[0].colour === '#12ab34', undefined, { timeout: 60_000 });
@@ -268,9 +278,7 @@ test('the name of a job file is suggested; without an earlier job there is nothi
   const other = await startStudio();
   t.after(() => other.stop());
   writeFileSync(join(other.folder, 'table.toml'), table);
-  const { page, wrong } = await openPage(browser, `${other.address}#make`, t, { viewport: { width: 1280, height: 800 } });
-  await post(page, '/api/open', { name: 'table.toml' });
-  await page.waitForFunction(() => document.querySelector('[data-testid=open] .title').textContent === 'table', undefined, { timeout: 90_000 });
+  const { page, wrong } = await withRobot(t, other, 'table');
   await slice(page);
   assert.equal(await page.getByLabel('Name of the job file').inputValue(), 'table.zip');
   await page.getByTestId('make-compare').click();
