@@ -102,7 +102,7 @@ private:
 };
 
 /// Overlap in a pixel up to which bodies count as only touching.
-constexpr std::int64_t rounding = full_coverage >> 16;
+constexpr std::int64_t touching = full_coverage >> 16;
 
 class Composer {
 public:
@@ -202,7 +202,7 @@ private:
     }
 
     std::int64_t counted(std::int64_t winding) {
-        layer_.overlapping = layer_.overlapping || std::abs(winding) > full_coverage + rounding;
+        layer_.overlapping = layer_.overlapping || std::abs(winding) > full_coverage + touching;
         return covered(winding);
     }
 
@@ -220,7 +220,7 @@ private:
                 share_of_[material] = 0;
             }
             const std::int64_t got = std::min(wanted, full_coverage - used);
-            layer_.overlapping = layer_.overlapping || wanted - got > rounding;
+            layer_.overlapping = layer_.overlapping || wanted - got > touching;
             share_of_[material] += got;
             used += got;
         }

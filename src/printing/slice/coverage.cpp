@@ -14,20 +14,42 @@ std::int64_t to_steps(double amount) {
     return static_cast<std::int64_t>(amount < 0 ? amount - 0.5 : amount + 0.5);
 }
 
-bool before(const Cell& l, const Cell& r) {
-    return l.key < r.key;
-}
+constexpr auto by_key = [](const Cell& l, const Cell& r) { return l.key < r.key; };
 
-/// Rows have only a few cells, nearly sorted.
+/// For rows with only a few cells, nearly sorted.
 void sort_row(Cell* begin, Cell* end) {
-    constexpr int few = 40;
-    if (end - begin > few) return std::sort(begin, end, before);
     for (Cell* i = begin + 1; i < end; ++i) {
         const Cell cell = *i;
         Cell* j = i;
-        for (; j > begin && before(cell, j[-1]); --j) *j = j[-1];
+        for (; j > begin && by_key(cell, j[-1]); --j) *j = j[-1];
         *j = cell;
     }
+}
+
+struct Range {
+    int first;
+    std::size_t count;
+};
+
+template <class Number>
+Range range_of(const std::vector<Cell>& cells, const Number& number) {
+    const auto [low, high] = std::minmax_element(cells.begin(), cells.end(),
+                                                 [&](const Cell& l, const Cell& r) { return number(l) < number(r); });
+    return {number(*low), static_cast<std::size_t>(number(*high) - number(*low)) + 1};
+}
+
+/// Counting sort of `from` into `to`, which keeps the order of cells with the same number. The ends of each number's
+/// cells, from the lowest number on.
+template <class Number>
+std::vector<std::uint32_t> counted(const std::vector<Cell>& from, std::vector<Cell>& to, const Number& number) {
+    const auto [first, count] = range_of(from, number);
+    const auto place = [&, first = first](const Cell& c) { return static_cast<std::size_t>(number(c) - first); };
+    std::vector<std::uint32_t> ends(count + 1, 0);
+    for (const Cell& c : from) ++ends[place(c) + 1];
+    for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
+    for (const Cell& c : from) to[ends[place(c)]++] = c;
+    ends.pop_back();
+    return ends;
 }
 
 }  // namespace
@@ -110,20 +132,22 @@ void CellBuffer::add_cell(int row, int column, std::int64_t cover, double middle
     }
 }
 
-/// Counting sort by rows, then sorting within each row.
 const std::vector<Cell>& CellBuffer::sorted() {
     sorted_.resize(cells_.size());
     if (cells_.empty()) return sorted_;
-    const auto [low, high] = std::minmax_element(cells_.begin(), cells_.end(), before);
-    const int first = low->row(), last = high->row();
-    std::vector<std::uint32_t> ends(static_cast<std::size_t>(last - first) + 2, 0);
-    for (const Cell& c : cells_) ++ends[static_cast<std::size_t>(c.row() - first) + 1];
-    for (std::size_t r = 1; r < ends.size(); ++r) ends[r] += ends[r - 1];
-    for (const Cell& c : cells_) sorted_[ends[static_cast<std::size_t>(c.row() - first)]++] = c;
+    const auto row = [](const Cell& c) { return c.row(); };
+    const auto column = [](const Cell& c) { return c.column(); };
+    constexpr std::size_t few = 16;
+    if (cells_.size() > few * range_of(cells_, row).count) {
+        by_column_.resize(cells_.size());
+        counted(cells_, by_column_, column);
+        counted(by_column_, sorted_, row);  // of one row and column they are in the order of the bodies, as they came
+        return sorted_;
+    }
     std::uint32_t begin = 0;
-    for (std::size_t r = 0; r + 1 < ends.size(); ++r) {
-        sort_row(sorted_.data() + begin, sorted_.data() + ends[r]);
-        begin = ends[r];
+    for (const std::uint32_t end : counted(cells_, sorted_, row)) {
+        sort_row(sorted_.data() + begin, sorted_.data() + end);
+        begin = end;
     }
     return sorted_;
 }

@@ -37,7 +37,7 @@ enum class Beyond { clamped, kept };
 /// Collects the cells of one layer.
 class CellBuffer {
 public:
-    /// Adds outlines of a body as returned by in_image().
+    /// Adds outlines of a body as returned by in_image(). Precondition: bodies come in ascending order.
     void add(int body, const std::vector<Segment>& lines);
 
     /// All cells, ordered by row, then column, then body; several may have the same pixel and body. Columns range from
@@ -50,7 +50,7 @@ private:
     void add_cell(int row, int column, std::int64_t cover, double middle);
 
     std::uint64_t body_ = 0;
-    std::vector<Cell> cells_, sorted_;
+    std::vector<Cell> cells_, by_column_, sorted_;
 };
 
 }  // namespace pliant::slice

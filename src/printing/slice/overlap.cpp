@@ -4,33 +4,12 @@
 #include <cstdlib>
 #include <utility>
 
+#include "printing/slice/outline_clusters.hpp"
+
 namespace pliant::slice {
 namespace {
 
-/// A piece of outline from its lower end to its upper one.
-struct Edge {
-    double y0, y1, x0, x1;
-    int body, winding;  ///< `winding`: change of the winding number from left to right
-
-    [[nodiscard]] double at(double y) const {
-        return y <= y0 ? x0 : y >= y1 ? x1 : x0 + (x1 - x0) * (y - y0) / (y1 - y0);
-    }
-};
-
-std::vector<Edge> edges_of(std::span<const std::vector<Segment>> outlines) {
-    std::vector<Edge> edges;
-    for (std::size_t b = 0; b < outlines.size(); ++b) {
-        const int body = static_cast<int>(b);
-        for (const Segment& s : outlines[b]) {
-            if (s.y0 < s.y1) edges.push_back({s.y0, s.y1, s.x0, s.x1, body, 1});
-            if (s.y1 < s.y0) edges.push_back({s.y1, s.y0, s.x1, s.x0, body, -1});
-        }
-    }
-    std::sort(edges.begin(), edges.end(), [](const Edge& l, const Edge& r) { return l.y0 < r.y0; });
-    return edges;
-}
-
-std::vector<double> heights_of(const std::vector<Edge>& edges) {
+std::vector<double> heights_of(std::span<const Edge> edges) {
     std::vector<double> heights;
     for (const Edge& e : edges) {
         heights.push_back(e.y0);
@@ -41,6 +20,10 @@ std::vector<double> heights_of(const std::vector<Edge>& edges) {
     return heights;
 }
 
+int owner(std::span<const Windings::value_type> inside) {
+    return inside.empty() ? -1 : inside.back().first;
+}
+
 /// An edge with the bodies on both sides, from a height on; -1: none.
 struct Border {
     double from, to;
@@ -49,13 +32,15 @@ struct Border {
 
 class Sweep {
 public:
-    Sweep(const std::vector<Edge>& edges, std::span<const int> material_of)
-        : edges_(edges),
-          material_of_(material_of),
-          borders_(edges.size(), {0, 0, -1, -1}),
+    explicit Sweep(std::span<const int> material_of)
+        : material_of_(material_of),
           layer_{std::vector<Overlap>(material_of.size()), std::vector<std::vector<Segment>>(material_of.size())} {}
 
-    DividedLayer over() {
+    void over(const Cluster& cluster) {
+        edges_ = cluster.edges;
+        around_ = cluster.around;
+        borders_.assign(edges_.size(), {0, 0, -1, -1});
+        active_.clear();
         const std::vector<double> heights = heights_of(edges_);
         std::size_t next = 0;
         for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
@@ -64,8 +49,9 @@ public:
             band(heights[i], heights[i + 1]);
         }
         for (std::size_t e = 0; e < edges_.size(); ++e) finish(e);
-        return std::move(layer_);
     }
+
+    DividedLayer take() { return std::move(layer_); }
 
 private:
     struct Passing {
@@ -105,36 +91,29 @@ private:
         crossed_.clear();
         for (const std::size_t e : active_) crossed_.emplace_back(edges_[e].at(middle), e);
         std::sort(crossed_.begin(), crossed_.end());
-        inside_.clear();
-        int left = -1;
+        inside_.assign(around_.begin(), around_.end());
+        int left = owner(around_);
         for (std::size_t i = 0; i < crossed_.size(); ++i) {
             const std::size_t e = crossed_[i].second;
-            pass(edges_[e]);
-            const int right = inside_.empty() ? -1 : inside_.back().first;
+            pass(inside_, edges_[e]);
+            const int right = owner(inside_);
             if (left != right) border(e, {bottom, top, left, right});
             left = right;
-            if (i + 1 < crossed_.size()) claim((crossed_[i + 1].first - crossed_[i].first) * height);
+            if (i + 1 == crossed_.size()) continue;
+            const double area = (crossed_[i + 1].first - crossed_[i].first) * height;
+            claim(inside_, area);
+            claim(around_, -area);  // which the cluster around has claimed
         }
     }
 
-    void pass(const Edge& edge) {
-        const auto place = std::lower_bound(inside_.begin(), inside_.end(), edge.body,
-                                            [](const auto& entry, int body) { return entry.first < body; });
-        if (place == inside_.end() || place->first != edge.body) {
-            inside_.insert(place, {edge.body, edge.winding});
-        } else if ((place->second += edge.winding) == 0) {
-            inside_.erase(place);
-        }
-    }
-
-    void claim(double area) {
-        if (inside_.empty()) return;
-        const int owner = material_of_[static_cast<std::size_t>(inside_.back().first)];
-        for (const auto& [body, winding] : inside_) {
+    void claim(std::span<const Windings::value_type> inside, double area) {
+        if (inside.empty()) return;
+        const int last = inside.back().first, material = material_of_[static_cast<std::size_t>(last)];
+        for (const auto& [body, winding] : inside) {
             Overlap& areas = layer_.areas[static_cast<std::size_t>(body)];
             areas.own += (std::abs(winding) - 1) * area;
-            if (body == inside_.back().first) continue;
-            (material_of_[static_cast<std::size_t>(body)] == owner ? areas.own : areas.others) += area;
+            if (body == last) continue;
+            (material_of_[static_cast<std::size_t>(body)] == material ? areas.own : areas.others) += area;
         }
     }
 
@@ -157,22 +136,24 @@ private:
         if (right >= 0) layer_.kept[static_cast<std::size_t>(right)].push_back({x0, from, x1, to});
     }
 
-    const std::vector<Edge>& edges_;
     std::span<const int> material_of_;
-    std::vector<Border> borders_;  ///< per edge, the part that is not in `layer_` yet
     DividedLayer layer_;
+    std::span<const Edge> edges_;  ///< of the cluster at hand
+    std::span<const Windings::value_type> around_;
+    std::vector<Border> borders_;  ///< per edge, the part that is not in `layer_` yet
     std::vector<std::size_t> active_;
     std::vector<Passing> passing_;
     std::vector<double> cuts_;
     std::vector<std::pair<double, std::size_t>> crossed_;
-    std::vector<std::pair<int, int>> inside_;  ///< bodies with non-zero winding, and that winding
+    Windings inside_;
 };
 
 }  // namespace
 
 DividedLayer divided(std::span<const std::vector<Segment>> outlines, std::span<const int> material_of) {
-    const std::vector<Edge> edges = edges_of(outlines);
-    return Sweep(edges, material_of).over();
+    Sweep sweep(material_of);
+    for (const Cluster& cluster : clusters_of(outlines)) sweep.over(cluster);
+    return sweep.take();
 }
 
 }  // namespace pliant::slice

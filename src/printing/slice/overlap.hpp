@@ -24,8 +24,10 @@ struct DividedLayer {
 /// Divides a layer, exactly up to rounding. `outlines` per body, in an image (x: columns, y: rows): closed, in either
 /// orientation, solid where the winding number is not zero; they may intersect themselves and each other. Kept outlines
 /// have their solid to the right where they run to higher rows, and share exact coordinates with those of neighbours.
-/// The plane is cut into bands between the heights of all corners and intersections; within a band outlines are
-/// straight and do not cross, so areas are sums of trapezoids. Cost: bands times the outlines in each.
+/// Outlines that stay apart are divided apart, with what surrounds them: the many pillars of a part's supports. Each
+/// such cluster is cut into bands between the heights of its corners and intersections; within a band outlines are
+/// straight and do not cross, so areas are sums of trapezoids. Cost: bands times the outlines in each, over all
+/// clusters.
 [[nodiscard]] DividedLayer divided(std::span<const std::vector<Segment>> outlines, std::span<const int> material_of);
 
 }  // namespace pliant::slice

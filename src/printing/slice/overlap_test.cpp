@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "base/core/near.hpp"
 #include "printing/slice/arrange.hpp"
@@ -29,6 +30,35 @@ std::vector<Segment> closed(const std::vector<Point2>& outline) {
 
 std::vector<Segment> rectangle(double x0, double y0, double x1, double y1) {
     return closed({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
+}
+
+/// The winding number of outlines around a point, from what a ray to the left crosses: 0 outside.
+int winding(const std::vector<Segment>& outlines, Point2 p) {
+    int sum = 0;
+    for (const Segment& s : outlines) {
+        if ((s.y0 <= p.y) == (s.y1 <= p.y)) continue;
+        const double x = s.x0 + (s.x1 - s.x0) * (p.y - s.y0) / (s.y1 - s.y0);
+        if (x < p.x) sum += s.y1 > s.y0 ? 1 : -1;
+    }
+    return sum;
+}
+
+/// Polygons of all sizes, of which some overlap, some lie in others, some in their holes, and most stay apart.
+std::vector<std::vector<Segment>> crowd(std::mt19937& random, std::size_t bodies) {
+    const auto number = [&](double low, double high) {
+        return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+    };
+    std::vector<std::vector<Segment>> outlines(bodies);
+    for (int i = 0; i < 40; ++i) {
+        const double radius = i < 2 ? number(20, 45) : number(0.5, 6), x = number(0, 100), y = number(0, 100);
+        auto polygon = regular_polygon(3 + static_cast<int>(random() % 14), radius, number(0, 3));
+        for (Point2& p : polygon) p = {p.x + x, p.y + y};
+        if (random() % 3 == 0) std::reverse(polygon.begin(), polygon.end());
+        const std::vector<Segment> segments = random() % 4 == 0 ? rectangle(x, y, x + radius, y + 2) : closed(polygon);
+        std::vector<Segment>& body = outlines[random() % bodies];
+        body.insert(body.end(), segments.begin(), segments.end());
+    }
+    return outlines;
 }
 
 }  // namespace
@@ -189,5 +219,25 @@ TEST_CASE("the areas that bodies keep make up the whole union, each place once")
     for (std::size_t b = 0; b < outlines.size(); ++b) {
         const double drawn = std::fabs(area(outlines[b]));
         CHECK(area(layer.kept[b]) == near(drawn - layer.areas[b].others - layer.areas[b].own, {.relative = 1e-9}));
+    }
+}
+
+TEST_CASE("in a crowd of polygons each place is kept by the last body there, once") {
+    std::mt19937 random(5);
+    const std::vector<int> materials{0, 1, 0, 2};
+    for (int scene = 0; scene < 50; ++scene) {
+        CAPTURE(scene);
+        const auto outlines = crowd(random, materials.size());
+        const DividedLayer layer = divided(outlines, materials);
+        for (int i = 0; i < 200; ++i) {
+            const Point2 p{static_cast<double>(random() % 1000003) / 1e4,
+                           static_cast<double>(random() % 1000003) / 1e4};
+            int last = -1;
+            for (std::size_t b = 0; b < outlines.size(); ++b) {
+                if (winding(outlines[b], p) != 0) last = static_cast<int>(b);
+            }
+            for (std::size_t b = 0; b < outlines.size(); ++b)
+                CHECK(winding(layer.kept[b], p) == (static_cast<int>(b) == last ? 1 : 0));
+        }
     }
 }
