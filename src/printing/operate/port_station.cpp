@@ -47,8 +47,8 @@ host::Clock& PortStation::clock() {
 }
 
 Result<std::unique_ptr<PortStation>> PortStation::open(PortOptions options, ReadyJob& ready) {
-    if (!(options.speed > 0 && options.speed <= 1e6))
-        return input_error("--speed {}: must be above 0, at most 1e6", options.speed);
+    if (!(options.speed >= 0.1 && options.speed <= 1e6))
+        return input_error("--speed {}: must be 0.1 to 1e6", options.speed);
     std::optional<ClockFile> file;
     if (!options.clock_file.empty()) {
         auto opened = ClockFile::open(options.clock_file);

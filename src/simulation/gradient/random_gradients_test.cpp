@@ -210,7 +210,8 @@ void try_robots(const std::function<test::RandomProgram(unsigned seed)>& made) {
         RandomState random(*model, p, seed);
         if (!random.moved) continue;
         CAPTURE(seed);
-        CAPTURE(test::described(p));
+        const std::string robot = test::described(p);  // a capture is read only where a check fails
+        CAPTURE(robot);
         if (!converge(random.system, random.controls, random.state)) {
             ++given_up;
             continue;

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <functional>
+#include <string>
 
 #include "simulation/linearisation/test_random_robots.hpp"
 
@@ -100,7 +101,8 @@ void try_robots(unsigned count, const std::function<test::RandomProgram(unsigned
         if (!model) continue;
         ++tried;
         CAPTURE(seed);
-        CAPTURE(test::described(p));
+        const std::string robot = test::described(p);  // a capture is read only where a check fails
+        CAPTURE(robot);
         RandomState random(*model, p, seed);
         moved += random.moved ? 1 : 0;
         auto at = Linearisation::create(random.system, random.state, random.controls);
