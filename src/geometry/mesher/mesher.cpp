@@ -5,6 +5,7 @@
 #include "geometry/mesher/mesh_worker.hpp"
 #include "geometry/mesher/notches.hpp"
 #include "geometry/mesher/packing.hpp"
+#include "geometry/shapes/rod_surface.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -76,6 +77,7 @@ Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSett
 
 Result<TriMesh> tessellate(const Solid& solid, double tolerance, Progress& progress) {
     if (!(tolerance > 0)) return input_error("the tolerance of a surface must be above zero");
+    if (std::optional<TriMesh> rod = rod_surface(solid, tolerance)) return std::move(*rod);
     Packer request;
     pack(request, solid);
     request.number(tolerance);

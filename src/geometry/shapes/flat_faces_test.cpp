@@ -150,7 +150,8 @@ TEST_CASE("a prism of 48 corners counts as round, one of 12 does not") {
 
 TEST_CASE("a faceted cylinder is not a polyhedron; with a plate it gives one mesh and a note on the overlap") {
     const TriMesh plate = triangles(box({0, 0, 0}, {20, 20, 5}));
-    const TriMesh pin = triangles(solid(CylinderSolid{{10, 10, 2}, {10, 10, 15}, 3}), 0.3);
+    const Solid rod = solid(CylinderSolid{{10, 10, 2}, {10, 10, 15}, 3});
+    const TriMesh pin = triangles(solid(RepeatedSolid{rod, 1, {}}), 0.3);  // by the mesher: no straight sides
     CHECK_FALSE(polyhedron(pin));
     const TetMesh mesh = mesh_of({{"plate", plate}, {"pin", pin}}, 1.5);
     const double whole = signed_volume(pin);

@@ -33,7 +33,7 @@ std::vector<Segment> rectangle(double x0, double y0, double x1, double y1) {
 }
 
 /// The winding number of outlines around a point, from what a ray to the left crosses: 0 outside.
-int winding(const std::vector<Segment>& outlines, Point2 p) {
+int turns_around(const std::vector<Segment>& outlines, Point2 p) {
     int sum = 0;
     for (const Segment& s : outlines) {
         if ((s.y0 <= p.y) == (s.y1 <= p.y)) continue;
@@ -234,10 +234,10 @@ TEST_CASE("in a crowd of polygons each place is kept by the last body there, onc
                            static_cast<double>(random() % 1000003) / 1e4};
             int last = -1;
             for (std::size_t b = 0; b < outlines.size(); ++b) {
-                if (winding(outlines[b], p) != 0) last = static_cast<int>(b);
+                if (turns_around(outlines[b], p) != 0) last = static_cast<int>(b);
             }
             for (std::size_t b = 0; b < outlines.size(); ++b)
-                CHECK(winding(layer.kept[b], p) == (static_cast<int>(b) == last ? 1 : 0));
+                CHECK(turns_around(layer.kept[b], p) == (static_cast<int>(b) == last ? 1 : 0));
         }
     }
 }

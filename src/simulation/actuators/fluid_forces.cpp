@@ -3,7 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <map>
+#include <utility>
 
+#include "base/core/disjoint_sets.hpp"
 #include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/actuators/cross_matrix.hpp"
@@ -90,10 +94,51 @@ Matrix9 second_change(const Weight& weight, const Sunk& sunk) {
 
 }  // namespace
 
+namespace {
+
+/// Fans that close the holes of a skin: each from the lowest node of the hole's rim.
+std::vector<std::array<int, 3>> caps_of(const std::vector<std::array<int, 3>>& skin) {
+    std::map<std::pair<int, int>, int> uses;  // of each edge, from its lower node: in that direction less the other
+    for (const auto& t : skin) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const int a = t[i], b = t[(i + 1) % 3];
+            uses[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    }
+    std::erase_if(uses, [](const auto& edge) { return edge.second == 0; });
+    std::map<int, int> number;  // of the nodes on rims, ascending
+    for (const auto& [edge, count] : uses) number[edge.first] = number[edge.second] = 0;
+    std::vector<int> node;
+    for (auto& [of, index] : number) {
+        index = static_cast<int>(node.size());
+        node.push_back(of);
+    }
+    DisjointSets rims(node.size());
+    for (const auto& [edge, count] : uses) rims.join(number[edge.first], number[edge.second]);
+    std::vector<std::array<int, 3>> caps;
+    for (const auto& [edge, count] : uses) {
+        const int tip = node[static_cast<std::size_t>(rims.find(number[edge.first]))];
+        if (edge.first == tip || edge.second == tip) continue;
+        for (int k = 0; k < std::abs(count); ++k)
+            caps.push_back(count > 0 ? std::array{edge.second, edge.first, tip}
+                                     : std::array{edge.first, edge.second, tip});
+    }
+    return caps;
+}
+
+}  // namespace
+
+FluidForces::FluidForces(const Fluid& fluid, std::vector<std::array<int, 3>> skin)
+    : fluid_(fluid), closed_skin_(std::move(skin)) {
+    const std::vector<std::array<int, 3>> caps = caps_of(closed_skin_);
+    cap_count_ = caps.size();
+    closed_skin_.insert(closed_skin_.end(), caps.begin(), caps.end());
+}
+
 double FluidForces::buoyancy_energy(std::span<const double> x, const Gravity& gravity) const {
     const Weight weight = weight_of(fluid_, gravity);
     double sum = 0;
-    for (const auto& t : skin_) {
+    for (const auto& t : closed_skin_) {
         const Sunk part = sunk(weight, corners(x, t));
         sum += part.s * part.Q;
     }
@@ -103,12 +148,22 @@ double FluidForces::buoyancy_energy(std::span<const double> x, const Gravity& gr
 void FluidForces::add_buoyancy(std::span<const double> x, const Gravity& gravity, std::span<double> forces) const {
     const Weight weight = weight_of(fluid_, gravity);
     if (weight.N_m3 == 0) return;
-    for (const auto& t : skin_) {
+    for (const auto& t : closed_skin_) {
         const Sunk part = sunk(weight, corners(x, t));
         const Vector9 force = weight.N_m3 * (part.Q * part.ds + part.s * part.dQ);
         for (std::size_t i = 0; i < 3; ++i) {
             Eigen::Map<Vector3> on(forces.data() + 3 * static_cast<std::size_t>(t[i]));
             on += force.segment<3>(3 * static_cast<Eigen::Index>(i));
+        }
+    }
+    for (const auto& t : std::span(closed_skin_).last(cap_count_)) {
+        const Corners c = corners(x, t);
+        for (const std::array<double, 3>& b : rule) {
+            const Vector3 pressed = weight.N_m3 * weight.depth(c.at(b)) / 6 * c.twice_area();
+            for (std::size_t i = 0; i < 3; ++i) {
+                Eigen::Map<Vector3> on(forces.data() + 3 * static_cast<std::size_t>(t[i]));
+                on -= b[i] * pressed;
+            }
         }
     }
 }
@@ -117,7 +172,7 @@ void FluidForces::visit_buoyancy(std::span<const double> x, const Gravity& gravi
                                  const Blocks& visit) const {
     const Weight weight = weight_of(fluid_, gravity);
     if (weight.N_m3 == 0) return;
-    for (const auto& t : skin_) {
+    for (const auto& t : closed_skin_) {
         Matrix9 H = second_change(weight, sunk(weight, corners(x, t)));
         if (project) H = linalg::positive_part(0.5 * (H + H.transpose()));
         for (Eigen::Index i = 0; i < 3; ++i) {
@@ -156,7 +211,7 @@ FluidForces::Piece FluidForces::piece(const std::array<int, 3>& triangle, const 
 
 double FluidForces::drag_energy(const Motion& motion) const {
     double sum = 0;
-    for (const auto& t : skin_) {
+    for (const auto& t : skin()) {
         const Piece p = piece(t, motion);
         sum += p.factor / 3 *
                (fluid_.drag_normal * std::pow(std::fabs(p.along), 3) +
@@ -166,7 +221,7 @@ double FluidForces::drag_energy(const Motion& motion) const {
 }
 
 void FluidForces::add_drag(const Motion& motion, std::span<double> forces) const {
-    for (const auto& t : skin_) {
+    for (const auto& t : skin()) {
         const Piece p = piece(t, motion);
         const Vector3 force = p.factor / 3 *
                               (fluid_.drag_normal * std::fabs(p.along) * p.along * p.normal +
@@ -179,7 +234,7 @@ void FluidForces::add_drag(const Motion& motion, std::span<double> forces) const
 }
 
 void FluidForces::visit_drag(const Motion& motion, const Blocks& visit) const {
-    for (const auto& t : skin_) {
+    for (const auto& t : skin()) {
         const Piece p = piece(t, motion);
         const Matrix3 onto = p.normal * p.normal.transpose();
         const double speed = p.across.norm();

@@ -3,7 +3,9 @@
 // Buoyancy is the gradient of the energy of the displaced fluid, E = rho g * integral of the depth over the part of the
 // body below the level. For a closed skin this equals
 //     E = rho g * integral over the skin of depth^2/2 (down . n) dA,    with depth = 0 above the level,
-// which needs no volume, and its force is the pressure on the skin.
+// which needs no volume, and its force is the pressure on the skin. Mouths of chambers that a support closes are holes
+// in the skin: caps close them, so that the energy is that of a closed skin, but the fluid presses on the support there
+// and not on the robot. The rest of the force is along the support and on what it holds.
 //
 // Drag on a piece of skin of area A and normal n that moves with velocity u through the fluid is
 //     rho/2 A (c_n |u_n| u_n + c_t |u_t| u_t),    u_n along n and u_t tangential,
@@ -25,9 +27,10 @@ namespace pliant::sim {
 class FluidForces {
 public:
     /// `skin`: triangles of contact nodes, counter-clockwise seen from outside.
-    FluidForces(const Fluid& fluid, std::vector<std::array<int, 3>> skin) : fluid_(fluid), skin_(std::move(skin)) {}
+    FluidForces(const Fluid& fluid, std::vector<std::array<int, 3>> skin);
 
-    [[nodiscard]] const std::vector<std::array<int, 3>>& skin() const { return skin_; }
+    /// The skin, and then the caps of its holes.
+    [[nodiscard]] const std::vector<std::array<int, 3>>& closed_skin() const { return closed_skin_; }
     [[nodiscard]] bool drags() const { return fluid_.drag_normal > 0 || fluid_.drag_tangential > 0; }
 
     using Blocks = std::function<void(int, int, const linalg::Matrix3&)>;
@@ -39,7 +42,7 @@ public:
     };
     /// Energy, J; x (3 nodes).
     [[nodiscard]] double buoyancy_energy(std::span<const double> x, const Gravity& gravity) const;
-    /// forces (3 nodes) += gradient of the energy.
+    /// forces (3 nodes) += gradient of the energy, less the pressure on caps.
     void add_buoyancy(std::span<const double> x, const Gravity& gravity, std::span<double> forces) const;
     /// Visits the 3 x 3 blocks of each triangle; `project`: each triangle without negative eigenvalues.
     void visit_buoyancy(std::span<const double> x, const Gravity& gravity, bool project, const Blocks& visit) const;
@@ -58,8 +61,13 @@ private:
     struct Piece;
     [[nodiscard]] Piece piece(const std::array<int, 3>& triangle, const Motion& motion) const;
 
+    [[nodiscard]] std::span<const std::array<int, 3>> skin() const {
+        return std::span(closed_skin_).first(closed_skin_.size() - cap_count_);
+    }
+
     Fluid fluid_;
-    std::vector<std::array<int, 3>> skin_;
+    std::vector<std::array<int, 3>> closed_skin_;
+    std::size_t cap_count_ = 0;
 };
 
 }  // namespace pliant::sim

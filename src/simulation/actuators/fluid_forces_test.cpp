@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/core/near.hpp"
+#include "base/linalg/vectors.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
@@ -39,6 +40,28 @@ void compare(std::vector<double> x, const Force& force, const Visit& visit) {
 }
 
 }  // namespace
+
+TEST_CASE("a hole in the skin feels no pressure, and the rest that of its own depth") {
+    const FluidForces::Gravity gravity{{0, 0, -9.81}};
+    Fluid fluid{1000, 0, 0, {}, {}, {}};
+    fluid.level_m = 2;
+    const auto sum_of = [&](const FluidForces& forces) {
+        std::vector<double> on(12, 0.0);
+        forces.add_buoyancy(corners, gravity, on);
+        linalg::Vector3 sum = linalg::Vector3::Zero();
+        for (std::size_t k = 0; k < 4; ++k) sum += linalg::Vector3(on[3 * k], on[3 * k + 1], on[3 * k + 2]);
+        return sum;
+    };
+    const linalg::Vector3 closed = sum_of(FluidForces(fluid, faces));
+    for (std::size_t hole = 0; hole < faces.size(); ++hole) {
+        std::vector<std::array<int, 3>> rest = faces;
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(hole));
+        const auto at = [&](int i) { return linalg::view(std::span<const double>(corners), faces[hole][i]); };
+        const linalg::Vector3 area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
+        const double depth = 2 - (at(0) + at(1) + at(2)).z() / 3;
+        CHECK((sum_of(FluidForces(fluid, rest)) - closed + 1000 * 9.81 * depth * area).norm() < 1e-9 * closed.norm());
+    }
+}
 
 TEST_CASE("buoyancy is the derivative of the displaced water's energy") {
     const FluidForces::Gravity gravity{{0.5, -1, -9}};

@@ -146,6 +146,38 @@ density = "1000 kg/m^3"
     CHECK(cube(hollow, chamber(surface)) == near(lift, {.relative = 2e-3}));
 }
 
+TEST_CASE("where a support closes the mouth of a chamber, the fluid presses on the support and not on the robot") {
+    const sim::Trajectory cup = run_text(R"(
+name = "cup"
+length_unit = "mm"
+[material.m]
+youngs_modulus = "10 MPa"
+poisson_ratio = 0.3
+density = "1000 kg/m^3"
+[[body]]
+name = "cup"
+material = "m"
+geometry = { difference = [{ box = [[0, 0, 0], [40, 20, 20]] }, { box = [[0, 5, 5], [30, 15, 15]] }] }
+[mesh]
+size = "5 mm"
+[[fixed]]
+name = "wall"
+plane = { point = [0, 0, 0], normal = [1, 0, 0] }
+[[chamber]]
+name = "air"
+geometry = { box = [[0, 5, 5], [30, 15, 15]] }
+target = { pressure = "0 kPa" }
+[fluid]
+density = "1000 kg/m^3"
+level = 1010
+[program]
+steps = 1
+)" + down);
+    REQUIRE(cup.converged);
+    // The water presses the cup to the wall by its pressure on the mouth's area.
+    CHECK(cup.steps.back().supports[0].force_N.x == near(1000 * g * 1 * 1e-4, {.relative = 1e-4}));
+}
+
 TEST_CASE("an object lighter than the displaced fluid rises, and a held one pulls with the difference") {
     const sim::Trajectory hangs = run_text(fluid_world(
         "density = \"1000 kg/m^3\"\n", "geometry = { sphere = { center = [0, 0, 0], radius = 10 } }\nmass = \"1 g\"\n",

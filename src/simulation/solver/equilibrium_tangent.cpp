@@ -36,7 +36,7 @@ void Equilibrium::append_cliques_beside_tets(const std::vector<int>& index,
     for (const JointForce& joint : joints_) joint.append_clique(index, cliques);
     for (const TorqueForces& torque : torques_) torque.append_clique(index, cliques);
     if (fluid_) {
-        for (const auto& triangle : fluid_->skin()) {
+        for (const auto& triangle : fluid_->closed_skin()) {
             std::vector<int> clique;
             for (const int& corner : triangle) {
                 for (const int node : model_->object_points().carriers(corner))
