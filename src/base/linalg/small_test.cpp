@@ -25,6 +25,25 @@ TEST_CASE("the signed SVD rebuilds F from two rotations, mirrored and flat matri
     }
 }
 
+TEST_CASE("the signed SVD finds the singular values of matrices of any scale and condition") {
+    std::srand(4);
+    for (int trial = 0; trial < 300; ++trial) {
+        Matrix3 F = Matrix3::Random();
+        F.col(trial % 3) *= std::pow(10, -(trial % 9));
+        F *= std::pow(10, 20 * (trial % 5) - 40);
+        const Svd3 svd = signed_svd(F);
+        const Eigen::JacobiSVD<Matrix3> other(F);
+        for (int k = 0; k < 3; ++k)
+            CHECK(std::fabs(svd.sigma[k]) ==
+                  near(other.singularValues()[k], {.absolute = 1e-14 * other.singularValues()[0]}));
+        CHECK(svd.sigma.prod() * F.determinant() >= 0);
+        CHECK((svd.U.transpose() * svd.U - Matrix3::Identity()).norm() < 1e-12);
+        // Where two signed singular values nearly cancel each other, the nearest rotation is not well defined.
+        if (svd.sigma[1] + svd.sigma[2] > 1e-3 * svd.sigma[0])
+            CHECK((nearest_rotation(F) - svd.U * svd.V.transpose()).norm() < 1e-11);
+    }
+}
+
 TEST_CASE("the gradient of the nearest rotation agrees with differences") {
     std::srand(5);
     for (int trial = 0; trial < 20; ++trial) {
