@@ -32,7 +32,7 @@ void read_materials(Reader& root, Context& context) {
         }
         const std::string base = reader.text("base");
         if (const Result<LibraryMaterial> found = library_material(base); !found) {
-            if (!base.empty()) reader.problem("base", found.error().message);
+            reader.problem("base", found.error().message);
             context.robot.materials.emplace_back().name = name;
             continue;
         }
@@ -155,6 +155,8 @@ Geometry read_file_body(Reader& reader, const std::string& file, Context& contex
     const std::filesystem::path path = need_file(reader, "geometry", file, context);
     const std::string part = reader.has("part") ? reader.text("part") : "";
     (void)reader.raw("part");
+    if (reader.has("part") && part.empty())
+        reader.problem("part", "is empty; name a part, or leave it out to take all");
     const mesh::Placement placement = read_placement(reader, "place");
     const mesh::GeometryKind kind = mesh::geometry_kind_of(path);
     if (kind != mesh::GeometryKind::step) {

@@ -22,7 +22,7 @@ constexpr std::size_t most_waypoints = 100000;
 template <class Spec>
 void check_name(Reader& reader, std::string_view key, std::string_view kind, const std::string& name,
                 const std::vector<Spec>& known) {
-    if (name.empty() || std::ranges::any_of(known, [&](const Spec& spec) { return spec.name == name; })) return;
+    if (std::ranges::any_of(known, [&](const Spec& spec) { return spec.name == name; })) return;
     std::vector<std::string> names;
     for (const Spec& spec : known) names.push_back(fmt::format("\"{}\"", spec.name));
     reader.problem(key, names.empty()
@@ -176,6 +176,27 @@ void read_position(Reader& reader, const Context& context, GoalSpec& goal) {
     }
 }
 
+/// Where the file says that two markers are: at the same point, or in the same box.
+bool at_one_place(const MarkerSpec& a, const MarkerSpec& b) {
+    const auto* point_a = std::get_if<Vec3>(&a.place);
+    const auto* point_b = std::get_if<Vec3>(&b.place);
+    if (point_a != nullptr && point_b != nullptr) return *point_a == *point_b;
+    const auto* box_a = std::get_if<BoxSelector>(&a.place);
+    const auto* box_b = std::get_if<BoxSelector>(&b.place);
+    return box_a != nullptr && box_b != nullptr && box_a->low == box_b->low && box_a->high == box_b->high;
+}
+
+/// Precondition: the places of all markers could be read.
+void check_markers_apart(Reader& reader, const Robot& robot, const GoalSpec& goal) {
+    if (goal.kind != GoalKind::direction || goal.markers.size() != 2 || goal.markers[0] == goal.markers[1]) return;
+    const auto first = std::ranges::find(robot.markers, goal.markers[0], &MarkerSpec::name);
+    const auto second = std::ranges::find(robot.markers, goal.markers[1], &MarkerSpec::name);
+    if (first == robot.markers.end() || second == robot.markers.end()) return;  // already reported
+    if (at_one_place(*first, *second))
+        reader.problem("markers", fmt::format("\"{}\" and \"{}\" are at one point, which has no direction",
+                                              goal.markers[0], goal.markers[1]));
+}
+
 void read_direction(Reader& reader, GoalSpec& goal) {
     goal.kind = GoalKind::direction;
     const config::Value* value = reader.raw("direction");
@@ -185,7 +206,10 @@ void read_direction(Reader& reader, GoalSpec& goal) {
         several ? reader.vectors("direction") : std::vector<Vec3>{reader.vector("direction")};
     for (const Vec3& direction : directions) {
         const double size = norm(direction);
-        if (!(size > 0)) return reader.problem("direction", "must not be zero");
+        if (!(size > 0)) {
+            goal.wanted.clear();
+            return reader.problem("direction", "must not be zero");
+        }
         goal.wanted.push_back({1 / size * direction});
     }
     if (goal.markers.size() != 2)
@@ -234,7 +258,8 @@ void read_goal_times(Reader& reader, GoalSpec& goal) {
     }
     (void)reader.raw("times");
     if (!goal.times.empty() && goal.wanted.size() == 1) goal.wanted.resize(goal.times.size(), goal.wanted.front());
-    if (!goal.times.empty() && goal.times.size() != goal.wanted.size())
+    // Where no waypoint could be read, that has been reported.
+    if (!goal.times.empty() && !goal.wanted.empty() && goal.times.size() != goal.wanted.size())
         reader.problem("times", fmt::format("gives {} for {}", counted(goal.times.size(), "time"),
                                             counted(goal.wanted.size(), "waypoint")));
     for (std::size_t k = 0; k < goal.times.size(); ++k) {
@@ -316,7 +341,12 @@ void check_goal_times(Reader& root, const Robot& robot) {
 }
 
 void read_goals(Reader& root, Context& context) {
-    read_each(root, context, "goal", "goals", context.robot.goals, read_goal);
+    const bool markers_known = !root.unreadable("marker");
+    const auto read = [&](Reader& reader, Context& of_robot, GoalSpec& goal) {
+        read_goal(reader, of_robot, goal);
+        if (markers_known) check_markers_apart(reader, of_robot.robot, goal);
+    };
+    read_each(root, context, "goal", "goals", context.robot.goals, read);
     check_together(root, context.robot);
 }
 

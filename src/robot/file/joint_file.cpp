@@ -33,6 +33,14 @@ std::vector<std::string> names_to_join(const Robot& robot) {
     return names;
 }
 
+/// Both of these are known, and neither is a body: they are held as a whole.
+bool are_rigid(const Robot& robot, const std::array<std::string, 2>& between) {
+    const std::vector<std::string> names = names_to_join(robot);
+    return std::ranges::all_of(between, [&](const std::string& name) {
+        return std::ranges::count(names, name) == 1 && std::ranges::count(robot.bodies, name, &BodySpec::name) == 0;
+    });
+}
+
 void read_between(Reader& reader, const Robot& robot, JointSpec& joint) {
     const std::vector<std::string> given = reader.texts("between");
     if (given.size() != 2) {
@@ -59,9 +67,12 @@ void read_drive(Reader& reader, JointSpec& joint) {
     const std::string_view place = slides ? "position" : "angle", force = slides ? "force" : "torque";
     for (const std::string_view key : {"angle", "torque", "position", "force"}) {
         if (!reader.has(key) || (is_driven && (key == place || key == force))) continue;
+        const bool of_slider = key == "position" || key == "force";
         (void)reader.raw(key);
         reader.problem(key, slides                           ? "a slider takes position or force"
                             : joint.kind == JointKind::motor ? "a motor takes angle or torque"
+                            : joint.kind == JointKind::hinge && of_slider
+                                ? "is that of a slider; a driven hinge (kind = \"motor\") takes angle or torque"
                             : joint.kind == JointKind::hinge
                                 ? "is that of a motor: kind = \"motor\" is a hinge that is driven"
                                 : "is that of a motor or a slider");
@@ -108,7 +119,11 @@ void read_joint(Reader& reader, Context& context, JointSpec& joint) {
         reader.problem("axis", "is that of a hinge, motor or slider");
     }
     joint.radius = reader.quantity("radius", Dimension::length, 0) / context.robot.unit_m;
-    if (reader.has("radius") && !(joint.radius > 0)) reader.problem("radius", "must be above zero");
+    if (reader.has("radius") && !(joint.radius > 0))
+        reader.problem("radius", "must be above zero");
+    else if (reader.has("radius") && are_rigid(context.robot, joint.between))
+        reader.problem("radius", fmt::format("is that of the material of a body; neither \"{}\" nor \"{}\" is one",
+                                             joint.between[0], joint.between[1]));
     if (turns(joint.kind))
         joint.stiffness = reader.quantity("stiffness", Dimension::torsional_stiffness, 0);
     else if (joint.kind == JointKind::slider)
