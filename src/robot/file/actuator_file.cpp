@@ -15,7 +15,13 @@ namespace {
 
 using config::Reader;
 
-CableTarget read_target(Reader& cable) {
+/// A missing target is at rest beside a range; otherwise exactly one kind (`given`) must be named.
+bool is_clear(const Reader& actuator, std::ptrdiff_t given) {
+    return given == 1 || (!actuator.has("target") && actuator.has("range"));
+}
+
+/// Empty where it is not clear which kind of target is meant, which has been reported then.
+std::optional<CableTarget> read_target(Reader& cable) {
     using Kind = CableTarget::Kind;
     Reader reader = cable.table("target", !cable.has("range"));  // default: the rest value
     CableTarget target;
@@ -32,6 +38,11 @@ CableTarget read_target(Reader& cable) {
     if (target.kind == Kind::tension_N && target.value < 0)
         reader.problem("tension", "must not be negative: a cable can only pull");
     for (const char* key : {"length_ratio", "shortening", "tension"}) (void)reader.raw(key);
+    if (!is_clear(cable, given)) {
+        (void)reader.raw("offset");
+        reader.finish();
+        return std::nullopt;
+    }
     const bool force = target.kind == Kind::tension_N;
     target.offset = reader.quantity("offset", force ? Dimension::force : Dimension::length, 0);
     reader.finish();
@@ -103,8 +114,10 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
         reader.problem("friction", fmt::format("{} is not possible; a coefficient from 0 to 10, a cord in a plastic "
                                                "tube has 0.1 to 0.3",
                                                cable.friction));
-    cable.target = read_target(reader);
-    cable.steering = read_steering(reader, steered_by(cable.target, cable.gap_elements));
+    const std::optional<CableTarget> target = read_target(reader);
+    cable.target = target.value_or(CableTarget{});
+    if (target) cable.steering = read_steering(reader, steered_by(*target, cable.gap_elements));
+    if (!target) cable.steering = skip_steering(reader, cable.name, context);
     if (reader.has("weight") && !cable.gap_elements)
         reader.problem("weight", "is that of gap elements, which act with model = \"gap-elements\" only");
     cable.weight = read_weight(reader).value_or(cable.weight);
@@ -139,7 +152,8 @@ double read_ratio(Reader& reader, std::string_view key) {
     return ratio;
 }
 
-ChamberTarget read_chamber_target(Reader& chamber) {
+/// Empty as for a cable.
+std::optional<ChamberTarget> read_chamber_target(Reader& chamber) {
     using Kind = ChamberTarget::Kind;
     constexpr std::array<std::string_view, 4> kinds = {"volume_ratio", "volume_change", "pressure", "gas_ratio"};
     Reader reader = chamber.table("target", !chamber.has("range"));
@@ -153,6 +167,11 @@ ChamberTarget read_chamber_target(Reader& chamber) {
     if (reader.has("pressure")) target = {Kind::pressure_Pa, reader.quantity("pressure", Dimension::pressure)};
     if (reader.has("gas_ratio")) target = {Kind::gas_ratio, read_ratio(reader, "gas_ratio")};
     for (const auto kind : kinds) (void)reader.raw(kind);
+    if (!is_clear(chamber, given)) {
+        (void)reader.raw("offset");
+        reader.finish();
+        return std::nullopt;
+    }
     const bool volume = target.kind == Kind::volume_ratio || target.kind == Kind::volume_change_m3;
     if (target.kind != Kind::gas_ratio)
         target.offset = reader.quantity("offset", volume ? Dimension::volume : Dimension::pressure, 0);
@@ -236,8 +255,10 @@ void read_chamber(Reader& reader, Context& context, ChamberSpec& chamber) {
     if (reader.has("weight") && !chamber.elements)
         reader.problem("weight", "is that of air elements, which act with model = \"elements\" only");
     chamber.weight = read_weight(reader).value_or(chamber.weight);
-    chamber.target = read_chamber_target(reader);
-    chamber.steering = read_steering(reader, steered_by(chamber.target));
+    const std::optional<ChamberTarget> target = read_chamber_target(reader);
+    chamber.target = target.value_or(ChamberTarget{});
+    if (target) chamber.steering = read_steering(reader, steered_by(*target));
+    if (!target) chamber.steering = skip_steering(reader, chamber.name, context);
     const auto kind = chamber.target.kind;
     if (chamber.elements && kind != ChamberTarget::Kind::volume_ratio && kind != ChamberTarget::Kind::volume_change_m3)
         reader.problem("target", "model = \"elements\" takes volumes only: volume_ratio or volume_change");

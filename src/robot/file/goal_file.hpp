@@ -18,6 +18,10 @@ struct SteeredBy {
 /// Empty if the actuator has no range.
 [[nodiscard]] std::optional<SteeringSpec> read_steering(config::Reader& actuator, const SteeredBy& by);
 
+/// The same for an actuator of this name whose target is unclear, which is recorded: a range stands for any.
+[[nodiscard]] std::optional<SteeringSpec> skip_steering(config::Reader& actuator, const std::string& name,
+                                                        Context& context);
+
 /// Precondition: markers, supports, obstacles and actuators have been read.
 void read_goals(config::Reader& root, Context& context);
 

@@ -1,6 +1,7 @@
 // Robot files with one mistake: one message, at the key, that the value does not satisfy.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -87,6 +88,88 @@ TEST_CASE("a key that belongs to another kind of joint is not called unknown, an
     CHECK(only(neo, joint + "kind = \"ball\"\nlimits = [-10, 10]\n") ==
           "joint[0].limits: are those of a hinge, motor or slider");
     CHECK(only(neo, joint + "kind = \"hinch\"\naxis = [0, 0, 1]\n").starts_with("joint[0].kind: "));
+    const std::string hinge = joint + "kind = \"hinge\"\naxis = [0, 0, 1]\n";
+    const std::string slides = ": is that of a slider; a driven hinge (kind = \"motor\") takes angle or torque";
+    CHECK(only(neo, hinge + "force = \"1 N\"\n") == "joint[0].force" + slides);
+    CHECK(only(neo, hinge + "position = \"1 mm\"\n") == "joint[0].position" + slides);
+    CHECK(only(neo, hinge + "angle = \"3 deg\"\n") ==
+          "joint[0].angle: is that of a motor: kind = \"motor\" is a hinge that is driven");
+}
+
+TEST_CASE("a joint's radius is that of a body's material, and of no effect between rigid things") {
+    const std::string object =
+        "[[object]]\nname = \"ball\"\ngeometry = { sphere = { center = [0, 0, 50], radius = 5 } }\nmass = \"1 g\"\n";
+    const auto joint = [&](const std::string& first, const std::string& second) {
+        return object + "[[joint]]\nname = \"j\"\nkind = \"ball\"\nbetween = [\"" + first + "\", \"" + second +
+               "\"]\npoint = [0, 0, 50]\nradius = \"1 mm\"\n";
+    };
+    CHECK(only(neo, joint("ball", "world")) ==
+          "joint[0].radius: is that of the material of a body; neither \"ball\" nor \"world\" is one");
+    CHECK(only(neo, joint("ball", "bar")).empty());
+    CHECK(only(neo, joint("ball", "wrold")).starts_with("joint[0].between: there is no body, plate or object"));
+}
+
+TEST_CASE("an empty name is the name of nothing") {
+    const std::string ranged = cable + "range = [0.8, 1]\n" + marker + "[[goal]]\nname = \"reach\"\n";
+    const std::string none = ": there is no marker \"\"; there is \"tip\"";
+    CHECK(only(neo, ranged + "marker = \"\"\npoint = [38, 5, 9]\n") == "goal[0].marker" + none);
+    CHECK(only(neo, ranged + "markers = [\"\"]\npoint = [38, 5, 9]\n") == "goal[0].markers" + none);
+    CHECK(only(neo, ranged + "marker = 3\npoint = [38, 5, 9]\n") == "goal[0].marker: is 3, a text in quotes is needed");
+    const std::string tolerance = "tolerance = \"0.1 N\"\n";
+    CHECK(only(neo, ranged + "obstacle = \"\"\nforce = \"1 N\"\n" + tolerance)
+              .starts_with("goal[0].obstacle: there is no obstacle \"\""));
+    CHECK(only(neo, ranged + "support = \"\"\nforce = [\"0 N\", \"0 N\", \"1 N\"]\n" + tolerance) ==
+          "goal[0].support: there is no fixed \"\"; there is \"clamp\"");
+    CHECK(only("[material.soft]\nbase = \"\"\ndensity = \"1 g/cm^3\"\n").starts_with("material.soft.base: "));
+}
+
+TEST_CASE("two markers at one point have no direction") {
+    const std::string both = cable + "range = [0.8, 1]\n" + marker;
+    const auto goal = [](const std::string& point) {
+        return "[[marker]]\nname = \"t2\"\npoint = " + point +
+               "\n[[goal]]\nname = \"turn\"\nmarkers = [\"tip\", \"t2\"]\ndirection = [0, 0, 1]\n";
+    };
+    CHECK(only(neo, both + goal("[40, 5, 5]")) ==
+          "goal[0].markers: \"tip\" and \"t2\" are at one point, which has no direction");
+    CHECK(only(neo, both + goal("[40, 5, 6]")).empty());
+    CHECK(only(neo, both + goal("[40, 5]")).starts_with("marker[1].point: "));
+}
+
+TEST_CASE("a key for what does not move is refused; a motion of zero is one") {
+    const std::string key = "[[program.key]]\ntime = \"1 s\"\n", later = "[[program.key]]\ntime = \"2 s\"\n";
+    const std::string floor = "[[obstacle]]\nname = \"floor\"\nplane = { point = [0, 0, -1], normal = [0, 0, 1] }\n";
+    const std::string program = "[program]\ngravity = [0, 0, 0]\n";
+    CHECK(only(neo, key + "gravity = 2\n" + later + "gravity = 1\n") ==
+          "program.key[0].gravity: the robot has no program.gravity; add it");
+    CHECK(only(neo, key + "clamp = 1\n") ==
+          "program.key[0].clamp: this [[fixed]] has neither move nor rotate; add one of them");
+    CHECK(only(neo, floor + key + "floor = 1\n") == "program.key[0].floor: this [[obstacle]] has no move; add it");
+    CHECK(only(neo, program + key + "gravity = 2\n").empty());
+    CHECK(only(neo, floor + "move = [0, 0, 0]\n" + key + "floor = 1\n").empty());
+}
+
+TEST_CASE("what depends on something that cannot be read is not judged") {
+    const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n') + 1; };
+    const std::string driven = cable +
+                               "target = { shortning = \"4 mm\", offset = \"1 N\" }\nrange = [\"0 mm\", \"5 mm\"]\n"
+                               "rate = \"1 mm\"\n" +
+                               marker + "[[goal]]\nname = \"reach\"\nmarker = \"tip\"\npoint = [38, 5, 9]\n";
+    const std::string keys = "[[program.key]]\ntime = \"1 s\"\nflexor = \"4 mm\"\n";
+    const std::string cables = problem(neo, driven + keys);
+    CHECK_MESSAGE(lines(cables) == 2, cables);
+    CHECK(cables.find("cable[0].target: takes one of") != std::string::npos);
+    CHECK(cables.find("cable[0].target.shortning: unknown key; did you mean \"shortening\"?") != std::string::npos);
+    const std::string chambers = problem(neo,
+                                         "[[chamber]]\nname = \"air\"\ninside = [5, 5, 5]\n"
+                                         "target = { presure = \"2 kPa\" }\nrange = [\"0 kPa\", \"5 kPa\"]\n"
+                                         "[[program.key]]\ntime = \"1 s\"\nair = \"1 kPa\"\n");
+    CHECK_MESSAGE(lines(chambers) == 2, chambers);
+    const std::string ranged =
+        cable + "range = [0.8, 1]\n" + marker + "[[goal]]\nname = \"reach\"\nmarker = \"tip\"\ntimes = [0.5, 1]\n";
+    CHECK(only(neo, ranged + "path = \"none.csv\"\n") == "goal[0].path: there is no file none.csv");
+    CHECK(only(neo, ranged + "path = []\n") == "goal[0].path: holds no point");
+    CHECK(only(neo, "[fluid]\ndensity = \"1 g/cm^3\"\nlevel = 0\n[program]\ngravity = 9.81\n") ==
+          "program.gravity: needs three finite numbers [x, y, z]");
 }
 
 TEST_CASE("constants of another law are told whose they are") {

@@ -8,6 +8,7 @@
 
 #include "base/core/text.hpp"
 #include "robot/description/cable_length.hpp"
+#include "robot/file/robot_document.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -23,7 +24,9 @@ struct Driven {
     double low = -1e300;  ///< values outside are refused
     double high = 1e300;
     std::function<void(Curve)> drive;
-    int* start_line = nullptr;  ///< receives the line of its key at time 0, if any; may be null
+    int* start_line = nullptr;    ///< receives the line of its key at time 0, if any; may be null
+    bool judged = true;           ///< false: what its values mean could not be read
+    std::string_view lacks = {};  ///< what is wrong with a key for it, where nothing of it moves; empty: nothing
 };
 
 Driven driven(CableSpec& cable) {
@@ -64,10 +67,22 @@ Driven driven(JointSpec& joint) {
     return d;
 }
 
-std::vector<Driven> everything_driven(Robot& robot) {
+/// The entry of a list of the file says how it moves, be it by nothing, as a design may set it.
+bool says_motion(const config::Value* list, std::size_t index) {
+    const auto* entries = list != nullptr ? std::get_if<config::Array>(&list->data) : nullptr;
+    if (entries == nullptr || index >= entries->size()) return false;
+    return entry_of((*entries)[index], "move") != nullptr || entry_of((*entries)[index], "rotate") != nullptr;
+}
+
+std::vector<Driven> everything_driven(Reader& root, Reader& program, Context& context) {
+    Robot& robot = context.robot;
     std::vector<Driven> list;
-    for (CableSpec& cable : robot.cables) list.push_back(driven(cable));
-    for (ChamberSpec& chamber : robot.chambers) list.push_back(driven(chamber));
+    const auto add_actuator = [&](auto& actuator) {
+        list.push_back(driven(actuator));
+        list.back().judged = !context.unclear_targets.contains(actuator.name);
+    };
+    for (CableSpec& cable : robot.cables) add_actuator(cable);
+    for (ChamberSpec& chamber : robot.chambers) add_actuator(chamber);
     for (JointSpec& joint : robot.joints) {
         if (joint.wanted) list.push_back(driven(joint));
     }
@@ -78,13 +93,20 @@ std::vector<Driven> everything_driven(Robot& robot) {
         list.push_back(std::move(d));
     };
     for (LoadSpec& load : robot.loads) share(load.name, load.share);
-    for (FixedSpec& fixed : robot.fixed) share(fixed.name, fixed.share);
-    for (ObstacleSpec& obstacle : robot.obstacles) {
+    for (std::size_t k = 0; k < robot.fixed.size(); ++k) {
+        share(robot.fixed[k].name, robot.fixed[k].share);
+        if (!says_motion(root.raw("fixed"), k))
+            list.back().lacks = "this [[fixed]] has neither move nor rotate; add one of them";
+    }
+    for (std::size_t k = 0; k < robot.obstacles.size(); ++k) {
+        ObstacleSpec& obstacle = robot.obstacles[k];
         share(obstacle.name, obstacle.share);
         list.back().start_line = &obstacle.start_line;
+        if (!says_motion(root.raw("obstacle"), k)) list.back().lacks = "this [[obstacle]] has no move; add it";
     }
     share("gravity", robot.gravity_share);
     if (robot.program.dynamics) list.back().rest = 1;
+    if (!program.has("gravity")) list.back().lacks = "the robot has no program.gravity; add it";
     return list;
 }
 
@@ -114,6 +136,10 @@ std::vector<double> read_times(std::vector<Reader>& keys) {
 /// The curve through the keys that name `d`; from rest at time 0, and without keys a ramp to its end.
 Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& times, const Driven& d, double duration) {
     Curve curve{{0}, {d.rest}};
+    if (!d.judged) {
+        for (Reader& key : keys) (void)key.raw(d.name);
+        return Curve{{0, duration}, {d.rest, d.end}};
+    }
     bool named = false;
     for (std::size_t k = 0; k < keys.size(); ++k) {
         (void)keys[k].raw(d.name);  // marks the key as read, so that only misspelt names are reported
@@ -141,7 +167,17 @@ void refuse_name_of_time(std::vector<Reader>& keys, const std::vector<Driven>& l
                              "drive; give that another name");
 }
 
-void read_keys(Reader& program, Robot& robot) {
+/// A key for what does not move would change nothing. Told at the first one.
+void refuse_what_is_still(std::vector<Reader>& keys, const std::vector<Driven>& list) {
+    for (const Driven& d : list) {
+        if (d.lacks.empty() || d.name == "time" || std::ranges::count(list, d.name, &Driven::name) > 1) continue;
+        const auto first = std::ranges::find_if(keys, [&](const Reader& key) { return key.has(d.name); });
+        if (first != keys.end()) first->problem(d.name, d.lacks);
+    }
+}
+
+void read_keys(Reader& root, Reader& program, Context& context) {
+    Robot& robot = context.robot;
     std::vector<Reader> keys = program.tables("key");
     double duration = program.quantity("duration", Dimension::time, 1);
     if (!(duration > 0)) program.problem("duration", "must be above zero");
@@ -152,8 +188,9 @@ void read_keys(Reader& program, Robot& robot) {
     }
     robot.program.duration = duration > 0 ? duration : 1;
     if (keys.empty() && duration == 1 && !robot.program.dynamics) return;
-    std::vector<Driven> list = everything_driven(robot);
+    std::vector<Driven> list = everything_driven(root, program, context);
     refuse_name_of_time(keys, list);
+    refuse_what_is_still(keys, list);
     for (std::size_t i = 0; i < list.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             if (list[i].name != list[j].name) continue;
@@ -169,16 +206,18 @@ void read_keys(Reader& program, Robot& robot) {
 }
 
 /// Prescribed motion does work on the robot that is not part of its energy.
-void check_conserving(Reader& program, const Robot& robot) {
-    for (const CableSpec& cable : robot.cables) {
-        if (cable.target.kind != CableTarget::Kind::tension_N)
+void check_conserving(Reader& program, const Context& context) {
+    const auto is_clear = [&](const auto& actuator) { return !context.unclear_targets.contains(actuator.name); };
+    for (const CableSpec& cable : context.robot.cables) {
+        if (is_clear(cable) && cable.target.kind != CableTarget::Kind::tension_N)
             program.problem("integrator",
                             fmt::format("cable \"{}\" is driven by its length, and energy-conserving steps "
                                         "know only tensions; drive it by tension, or use \"bdf2\"",
                                         cable.name));
     }
-    for (const ChamberSpec& chamber : robot.chambers) {
+    for (const ChamberSpec& chamber : context.robot.chambers) {
         using Kind = ChamberTarget::Kind;
+        if (!is_clear(chamber)) continue;
         if (chamber.target.kind == Kind::volume_ratio || chamber.target.kind == Kind::volume_change_m3)
             program.problem("integrator", fmt::format("chamber \"{}\" is driven by its volume, and energy-conserving "
                                                       "steps know only pressures and sealed gas; drive it so, or use "
@@ -188,7 +227,8 @@ void check_conserving(Reader& program, const Robot& robot) {
 }
 
 /// With a time step, mass and damping take part. Gravity then acts from the beginning.
-void read_dynamics(Reader& program, Robot& robot) {
+void read_dynamics(Reader& program, Context& context) {
+    Robot& robot = context.robot;
     const bool moving = program.has("time_step");
     if (moving) robot.program.dynamics = Dynamics{};
     const double mass = program.number("mass_damping", 0);
@@ -202,7 +242,7 @@ void read_dynamics(Reader& program, Robot& robot) {
         if (!moving && program.has(key)) program.problem(key, "has no meaning without time_step");
     }
     if (program.has("time_tolerance") && !(tolerance > 0)) program.problem("time_tolerance", "must be above zero");
-    if (conserving) check_conserving(program, robot);
+    if (conserving) check_conserving(program, context);
     if (moving)
         robot.program.dynamics = Dynamics{{mass, stiffness},
                                           conserving ? Integrator::energy_conserving : Integrator::bdf2,
@@ -236,7 +276,8 @@ void spread_steps(Reader& program, Robot& robot) {
 
 }  // namespace
 
-void read_program(config::Reader& root, Robot& robot) {
+void read_program(config::Reader& root, Context& context) {
+    Robot& robot = context.robot;
     config::Reader reader = root.table("program", false);
     Program& program = robot.program;
     program.steps = static_cast<int>(std::clamp<std::int64_t>(reader.integer("steps", 30), -1, 1000000));
@@ -248,6 +289,8 @@ void read_program(config::Reader& root, Robot& robot) {
     if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1))
         reader.problem("tolerance", "must be between 1e-10 and 0.1");
     robot.gravity_m_s2 = reader.vector("gravity", Vec3{});
+    if (robot.fluid && robot.fluid->level && robot.gravity_m_s2 == Vec3{} && !reader.unreadable("gravity"))
+        root.problem("fluid", "has a level, and nothing says where up is; give program.gravity");
     const std::string solver =
         reader.choice("solver", {"auto", "newton", "quasi-newton", "anderson", "local-global"}, "auto");
     program.solver = solver_named(solver).value_or(Solver::automatic);
@@ -259,8 +302,8 @@ void read_program(config::Reader& root, Robot& robot) {
     if (!(program.imperfection_m >= 0)) reader.problem("imperfection", "must not be below zero; 0 only warns");
     robot.ambient_pressure_Pa = reader.quantity("ambient_pressure", Dimension::pressure, 101325);
     if (!(robot.ambient_pressure_Pa > 0)) reader.problem("ambient_pressure", "is an absolute pressure: above zero");
-    read_dynamics(reader, robot);
-    read_keys(reader, robot);
+    read_dynamics(reader, context);
+    read_keys(root, reader, context);
     if (robot.program.dynamics) spread_steps(reader, robot);
     reader.finish();
 }

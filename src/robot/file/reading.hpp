@@ -20,6 +20,9 @@ struct Context {
     config::Problems& problems;
     mesh::NamedShapes shapes;  ///< [shape.NAME]: solids that others may use
     bool moves_in_time;        ///< program.time_step is given
+    /// Names of cables and chambers whose target is none of the known ones: that is reported, and what their offset,
+    /// range and keys mean cannot be told.
+    std::set<std::string> unclear_targets = {};
 };
 
 /// A problem if `key`, which says something about a motion in time, acts (`is_used`) in a program that has none.

@@ -99,10 +99,8 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     read_markers(root, context);
     read_sensors(root, context);
     read_goals(root, context);
-    read_program(root, robot);
+    read_program(root, context);
     if (goals_of_this_program) check_goal_times(root, robot);
-    if (robot.fluid && robot.fluid->level && robot.gravity_m_s2 == Vec3{})
-        root.problem("fluid", "has a level, and nothing says where up is; give program.gravity");
     if (robot.fixed.empty() && !root.unreadable("fixed") && !may_be_free(robot))
         root.problem("",
                      "nothing is fixed; add [[fixed]] with a box that holds one end of the robot, an [[obstacle]] to "

@@ -48,4 +48,13 @@ std::optional<SteeringSpec> read_steering(Reader& actuator, const SteeredBy& by)
     return steering;
 }
 
+std::optional<SteeringSpec> skip_steering(Reader& actuator, const std::string& name, Context& context) {
+    context.unclear_targets.insert(name);
+    if (!actuator.has("range")) return read_steering(actuator, {});
+    for (const char* key : {"range", "rate", "price"}) (void)actuator.raw(key);
+    SteeringSpec any;
+    any.line = actuator.line_of("range");
+    return any;
+}
+
 }  // namespace pliant::robot

@@ -282,7 +282,8 @@ Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text) {
         std::vector<std::string> names;
         for (const Unknown& one : all) names.push_back(one.key);
         const std::string nearest = nearest_name(key, names);
-        return input_error("{}: the robot has no such parameter to find; {}", key,
+        return input_error("{}: the robot has no such parameter to find; {}",
+                           key.empty() ? fmt::format("--unknown \"{}\"", text) : std::string(key),
                            nearest.empty() ? "it has " + join_names(names) : "did you mean \"" + nearest + "\"?");
     }
     Unknown unknown = *found;

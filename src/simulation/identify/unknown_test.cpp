@@ -123,6 +123,8 @@ TEST_CASE("an invalid unknown is reported in one line") {
           "material.sof.youngs_modulus: the robot has no such parameter to find; did you mean "
           "\"material.soft.youngs_modulus\"?");
     CHECK(unknown_problem(bar, "mesh.size").starts_with("mesh.size: the robot has no such parameter to find"));
+    CHECK(unknown_problem(bar, "").starts_with("--unknown \"\": the robot has no such parameter to find; "));
+    CHECK(unknown_problem(bar, "=1..2").starts_with("--unknown \"=1..2\": the robot has no such parameter"));
     CHECK(unknown_problem(bar, "material.soft.youngs_modulus=1 MPa") ==
           "material.soft.youngs_modulus: \"1 MPa\" is not a range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
     CHECK(unknown_problem(bar, "material.soft.youngs_modulus=1..2")

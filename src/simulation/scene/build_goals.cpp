@@ -7,23 +7,36 @@
 namespace pliant::robot {
 namespace {
 
+/// The reader of the file has checked the names; an index beyond the list would read foreign memory.
 template <class List>
-std::size_t index_of_known(const List& list, const std::string& name) {
-    return static_cast<std::size_t>(std::ranges::find_if(list, [&](const auto& entry) { return entry.name == name; }) -
-                                    list.begin());
+Result<std::size_t> index_of_named(const Robot& robot, const GoalSpec& goal, const List& list,
+                                   const std::string& name) {
+    const auto found = std::ranges::find_if(list, [&](const auto& entry) { return entry.name == name; });
+    if (found == list.end())
+        return input_error("{}: goal \"{}\": the robot has no \"{}\" that it could be for", robot.file.string(),
+                           goal.name, name);
+    return static_cast<std::size_t>(found - list.begin());
 }
 
-sim::Goal tied(const Robot& robot, const sim::Model& model, const GoalSpec& spec) {
+Result<sim::Goal> tied(const Robot& robot, const sim::Model& model, const GoalSpec& spec) {
     sim::Goal goal;
     goal.name = spec.name;
     goal.kind = spec.kind;
     goal.sum_of_sizes = spec.sum_of_sizes;
     goal.tolerance = spec.tolerance;
     goal.weight = spec.weight;
-    for (const std::string& marker : spec.markers)
-        goal.markers.push_back(index_of_known(model.description().markers, marker));
-    if (spec.kind == GoalSpec::Kind::contact_force) goal.on = index_of_known(robot.obstacles, spec.on);
-    if (spec.kind == GoalSpec::Kind::support_force) goal.on = index_of_known(robot.fixed, spec.on);
+    for (const std::string& marker : spec.markers) {
+        const Result<std::size_t> index = index_of_named(robot, spec, model.description().markers, marker);
+        if (!index) return tl::unexpected(index.error());
+        goal.markers.push_back(*index);
+    }
+    const bool contact = spec.kind == GoalSpec::Kind::contact_force;
+    if (contact || spec.kind == GoalSpec::Kind::support_force) {
+        const Result<std::size_t> index = contact ? index_of_named(robot, spec, robot.obstacles, spec.on)
+                                                  : index_of_named(robot, spec, robot.fixed, spec.on);
+        if (!index) return tl::unexpected(index.error());
+        goal.on = *index;
+    }
     goal.wanted = spec.wanted;
     for (std::vector<Vec3>& at : goal.wanted) {
         if (spec.kind == GoalSpec::Kind::plane) at[0] = robot.unit_m * at[0];
@@ -50,6 +63,21 @@ Status check_near(const Robot& robot, const sim::Model& model, const sim::Goal& 
         }
     }
     return {};
+}
+
+/// Markers at different points of the file may be carried by the same nodes in the same way, as the means of two boxes
+/// are that hold the same nodes.
+Status check_direction(const Robot& robot, const sim::Model& model, const sim::Goal& goal) {
+    constexpr double at_one_point = 1e-9;  // times the robot's size
+    if (goal.kind != GoalSpec::Kind::direction) return {};
+    std::vector<double> x;
+    for (const Vec3& point : model.mesh().points) x.insert(x.end(), {point.x, point.y, point.z});
+    const sim::Marker& first = model.description().markers[goal.markers[0]];
+    const sim::Marker& second = model.description().markers[goal.markers[1]];
+    const double apart = norm(position(second.point, x) - position(first.point, x));
+    if (apart > at_one_point * bounds_of(model.mesh().points).diagonal()) return {};
+    return input_error("{}: goal \"{}\": markers \"{}\" and \"{}\" are at one point, which has no direction",
+                       robot.file.string(), goal.name, first.name, second.name);
 }
 
 sim::Steered steered(std::size_t actuator, const std::string& name, const SteeringSpec& spec, bool ratio) {
@@ -98,10 +126,15 @@ Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model
             robot.file.string());
     std::size_t waypoints = 1;
     for (const GoalSpec& goal : robot.goals) {
-        task.goals.push_back(tied(robot, model, goal));
+        Result<sim::Goal> made = tied(robot, model, goal);
+        if (!made) return tl::unexpected(made.error());
+        task.goals.push_back(std::move(*made));
         if (Status near = check_near(robot, model, task.goals.back()); !near) return tl::unexpected(near.error());
         waypoints = std::max(waypoints, goal.wanted.size());
-        if (need_goals && !goal.times.empty()) task.times = goal.times;
+        if (!need_goals) continue;
+        if (!goal.times.empty()) task.times = goal.times;
+        if (Status apart = check_direction(robot, model, task.goals.back()); !apart)
+            return tl::unexpected(apart.error());
     }
     if (!need_goals) waypoints = 1;
     task.timed = !task.times.empty();

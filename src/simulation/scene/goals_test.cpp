@@ -85,6 +85,24 @@ TEST_CASE("a goal that is too far away for its direction to be told is refused")
     CHECK(holds(problem("1e30"), "bar.toml: goal \"reach\": its point [1e+30, 5, 9] is over a million times"));
 }
 
+TEST_CASE("a goal for what the model does not have, or a direction of markers at one place, is refused") {
+    auto built = testing::build(parse_robot(robot_with_cable + reach + "point = [38, 5, 9]\n", "bar.toml"));
+    built.robot.goals[0].markers = {"none"};
+    const auto task = build_goals(built.robot, built.model);
+    REQUIRE_FALSE(task);
+    CHECK(holds(task.error().message, "goal \"reach\": the robot has no \"none\" that it could be for"));
+    // Two boxes of the same nodes.
+    const std::string ends =
+        "[[marker]]\nname = \"end\"\nbox = [[39, -1, -1], [41, 11, 11]]\n"
+        "[[marker]]\nname = \"face\"\nbox = [[39, -2, -2], [41, 12, 12]]\n"
+        "[[goal]]\nname = \"turn\"\nmarkers = [\"end\", \"face\"]\ndirection = [0, 0, 1]\n";
+    const auto flat = testing::build(parse_robot(robot_with_cable + ends, "bar.toml"));
+    const auto turn = build_goals(flat.robot, flat.model);
+    REQUIRE_FALSE(turn);
+    CHECK(holds(turn.error().message, "markers \"end\" and \"face\" are at one point, which has no direction"));
+    CHECK(build_goals(flat.robot, flat.model, false));
+}
+
 TEST_CASE("a path is read from a table, in the unit that its columns name") {
     const test::Folder folder("goals");
     std::ofstream(folder.path() / "path.csv") << "# drawn\ntime,x (cm),y (mm),z\n0.5,3.8,5,9\n1,3.7,5,11\n";
