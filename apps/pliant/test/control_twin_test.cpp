@@ -134,6 +134,40 @@ TEST_CASE("after a controller restart anywhere the light is off; the print resum
 }
 
 TEST_CASE("after a power cut anywhere the print resumes; only an exposure of unknown length is asked about") {
+TEST_CASE("after a restart anywhere in a swap by magnet the print resumes, unless the vat was on its way") {
+    const auto bench = [](const std::vector<twin::Fault>& faults) {
+        twin::Options options;
+        options.faults = faults;
+        return std::make_unique<ControlBench>(std::move(options), "tower_magnet", 2);
+    };
+    const auto undisturbed = bench({});
+    undisturbed->start();
+    const std::string whole = block_of(*undisturbed->twin);
+    // Of four exposures the last three begin with a swap; the second one is in the middle of the print.
+    const auto lines = static_cast<int>(undisturbed->snapshot().lines_sent);
+    int resumed = 0, on_its_way = 0;
+    for (int n = lines * 3 / 10; n < lines * 7 / 10; ++n) {
+        CAPTURE(n);
+        const auto b = bench({{twin::Fault::Kind::reset, n, 0}});
+        REQUIRE(b->start());
+        REQUIRE(b->snapshot().can_resume);
+        b->start({true, {}});
+        INFO(b->last_error());
+        if (b->last_error().find("which has let it go") != std::string::npos) {
+            ++on_its_way;
+            continue;
+        }
+        ++resumed;
+        CHECK(b->snapshot().finished);
+        CHECK(block_of(*b->twin) == whole);
+        CHECK(b->twin->log().violations.empty());
+    }
+    MESSAGE(resumed << " resumed, " << on_its_way << " with a vat on its way");
+    CHECK(resumed > 10);
+    CHECK(on_its_way > 0);
+    CHECK(on_its_way < resumed);
+}
+
     ControlBench undisturbed;
     undisturbed.start();
     const std::string whole = block_of(*undisturbed.twin);
