@@ -172,6 +172,8 @@ private:
         const auto index = static_cast<std::size_t>(*step);
         LightFact& fact = facts_.lights[index];
         fact.record = r.number;
+        open_.erase(fact.open_light);
+        open_[r.number] = index;
         fact.layer = static_cast<int>(*layer);
         fact.material = static_cast<int>(*material);
         fact.planned_s = *planned;
@@ -188,14 +190,14 @@ private:
         if (!on) return tl::unexpected(on.error());
         constexpr double clock_step_s = 1;  // back, which a light that was just switched on may be measured across
         if (!(*on > -clock_step_s)) return input_error("journal record {} (dark): on={:g} is below 0", r.number, *on);
-        for (auto& [step, fact] : facts_.lights) {
-            if (fact.open_light != *light || *light == 0) continue;
-            fact.open_light = 0;
-            fact.lit_s += std::max(0.0, *on);
-            fact.complete = *done != 0;
-            return {};
-        }
-        return input_error("journal record {} (dark): light {} was not on", r.number, *light);
+        const auto open = open_.find(*light);
+        if (open == open_.end()) return input_error("journal record {} (dark): light {} was not on", r.number, *light);
+        LightFact& fact = facts_.lights[open->second];
+        open_.erase(open);
+        fact.open_light = 0;
+        fact.lit_s += std::max(0.0, *on);
+        fact.complete = *done != 0;
+        return {};
     }
     Status exposure(const JournalRecord& r) {
         const auto material = index(r, "material"), from = index(r, "from");
@@ -233,6 +235,7 @@ private:
 std::string write_state(const Interlock::State& state) {
     std::string position, homed, slots;
     for (const machine::Axis axis : machine::all_axes) {
+    std::map<long, std::size_t> open_;  ///< by record of a light without a `dark`: its step
         position += fmt::format("{},", state.position[axis]);
         homed += state.homed[static_cast<std::size_t>(axis)] ? '1' : '0';
     }
