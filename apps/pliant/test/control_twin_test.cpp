@@ -1046,15 +1046,38 @@ TEST_CASE("commands that the current state does not allow are refused") {
     CHECK(b.snapshot().finished);
 }
 
-TEST_CASE("a request that follows the start at once is not lost") {
+TEST_CASE("a request that follows the start at once is not lost: nothing moves, and the print has not begun") {
+    for (const bool cancels : {false, true}) {
+        ControlBench b;
+        REQUIRE(b.control->start({}));
+        CHECK(host::state_text(b.snapshot()) == "Connecting");
+        CHECK((cancels ? b.control->cancel() : b.control->suspend()));
+        b.control->serve_until_idle();
+        CHECK(b.snapshot().state == State::offline);
+        CHECK(b.snapshot().message == "ended before anything moved");
+        CHECK_FALSE(b.snapshot().finished);
+        CHECK_FALSE(b.snapshot().failed);
+        CHECK_FALSE(b.snapshot().can_resume);
+        CHECK(b.lights() == 0);
+        CHECK(b.twin->log().homings == 0);
+        b.must_finish();
+    }
+}
+
+TEST_CASE("a print that is ended while its host connects to resume it still waits to be resumed") {
     ControlBench b;
-    REQUIRE(b.control->start({}));
-    CHECK(b.control->suspend());
-    b.control->serve_until_idle();
-    CHECK(b.snapshot().state == State::idle);
-    CHECK_FALSE(b.snapshot().finished);
+    b.must_die(400);
+    b.new_host();
+    const int homings = b.twin->log().homings;
+    int looks = 0;
+    b.life->at_look = [&] {
+        if (++looks == 3) CHECK(b.control->suspend());
+    };
+    b.start({true, {}});
+    CHECK(b.snapshot().state == State::offline);
     CHECK(b.snapshot().can_resume);
-    CHECK(b.lights() == 0);
+    CHECK(b.twin->log().homings == homings);
+    b.life->at_look = {};
     b.must_finish({true, {}});
 }
 

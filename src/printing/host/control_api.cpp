@@ -23,7 +23,7 @@ using machine::Axis;
 
 json state_json(const Snapshot& s) {
     const bool connected = s.state != State::offline && s.state != State::connecting && s.state != State::halted;
-    return {{"text", state_text(s.state)},
+    return {{"text", state_text(s)},
             {"message", s.message},
             {"flags",
              {{"operational", connected},
@@ -192,7 +192,7 @@ std::optional<ApiAnswer> wrong_key(const Request& r, std::initializer_list<Key> 
 
 ApiAnswer get_job(const Request& r) {
     const Snapshot s = r.control.snapshot();
-    return with({{"job", job_json(s)}, {"progress", progress_json(s)}, {"state", state_text(s.state)}});
+    return with({{"job", job_json(s)}, {"progress", progress_json(s)}, {"state", state_text(s)}});
 }
 
 ApiAnswer pause_job(const Request& r) {
@@ -248,7 +248,7 @@ ApiAnswer post_skip(const Request& r) {
 
 ApiAnswer get_connection(const Request& r) {
     const Snapshot s = r.control.snapshot();
-    return with({{"current", {{"state", state_text(s.state)}, {"firmware", s.firmware}, {"message", s.message}}}});
+    return with({{"current", {{"state", state_text(s)}, {"firmware", s.firmware}, {"message", s.message}}}});
 }
 
 ApiAnswer post_connection(const Request& r) {

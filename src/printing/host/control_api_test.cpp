@@ -144,7 +144,8 @@ TEST_CASE("connect, look, start: the answers follow OctoPrint's API") {
     const double planned_s = job["job"]["estimatedPrintTime"];
     CHECK(planned_s == job["progress"]["printTimeLeft"]);
     CHECK(b.post("/api/job", {{"command", "start"}}).status == 204);
-    CHECK(b.get("/api/job")["state"] == "Printing");
+    CHECK(b.get("/api/job")["state"] == "Connecting");
+    CHECK(b.get("/api/printer")["state"]["flags"]["printing"] == true);
     CHECK(b.post("/api/job", {{"command", "start"}}).status == 409);
     b.control.serve_until_idle();
     job = b.get("/api/job");
