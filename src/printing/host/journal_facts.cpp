@@ -60,6 +60,7 @@ public:
         if (r.kind == "dark") return dark(r);
         if (r.kind == "exposure") return exposure(r);
         if (r.kind == "skip") return skip(r);
+        if (r.kind == "hook") return hook(r);
         if (r.kind == "stop") return stop(r);
         if (r.kind == "end") facts_.ended = true;
         if (r.kind == "cancel") facts_.cancelled = true;
@@ -171,9 +172,9 @@ private:
         if (!at) return tl::unexpected(at.error());
         const auto index = static_cast<std::size_t>(*step);
         LightFact& fact = facts_.lights[index];
-        fact.record = r.number;
         open_.erase(fact.open_light);
         open_[r.number] = index;
+        fact.record = r.number;
         fact.layer = static_cast<int>(*layer);
         fact.material = static_cast<int>(*material);
         fact.planned_s = *planned;
@@ -215,6 +216,12 @@ private:
         facts_.skip_records.push_back(r.number);
         return {};
     }
+    Status hook(const JournalRecord& r) {
+        const auto layer = index(r, "layer");
+        if (!layer) return tl::unexpected(layer.error());
+        facts_.hook = HookFact{*layer, r.number};
+        return {};
+    }
     Status stop(const JournalRecord& r) {
         const auto quick = r.whole("quick");
         if (!quick) return tl::unexpected(quick.error());
@@ -228,6 +235,7 @@ private:
     }
 
     JournalFacts& facts_;
+    std::map<long, std::size_t> open_;  ///< by record of a light without a `dark`: its step
 };
 
 }  // namespace
@@ -235,7 +243,6 @@ private:
 std::string write_state(const Interlock::State& state) {
     std::string position, homed, slots;
     for (const machine::Axis axis : machine::all_axes) {
-    std::map<long, std::size_t> open_;  ///< by record of a light without a `dark`: its step
         position += fmt::format("{},", state.position[axis]);
         homed += state.homed[static_cast<std::size_t>(axis)] ? '1' : '0';
     }
