@@ -2,8 +2,11 @@
 // and images.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -27,6 +30,7 @@ struct PrintOptions {
     bool twin = false;
     bool list_ports = false;
     bool given_speed = false;
+    std::vector<std::string> given;  ///< the names of all options on the command line
 };
 
 /// Every result has a name of its kind, and none that of the job, which is only read.
@@ -44,8 +48,16 @@ Status check_outputs(const LiveOptions& live) {
     return check_file_places({live.report, live.verdict, live.journal});
 }
 
-/// The report of a print from its journal, whoever printed it.
-Result<int> report_on_journal(const LiveOptions& live) {
+/// The report of a print from its journal, whoever printed it. Options of printing would do nothing.
+Result<int> report_on_journal(const PrintOptions& options) {
+    constexpr std::array<std::string_view, 4> allowed{"--journal", "--report", "--quiet", "--json"};
+    for (const std::string& given : options.given) {
+        if (std::ranges::find(allowed, given) == allowed.end())
+            return input_error(
+                "{} goes with --port or --twin; without them --report tells of the print that the journal holds",
+                given);
+    }
+    const LiveOptions& live = options.live;
     const std::string journal = live.journal.empty() ? live.job + ".journal" : live.journal;
     const Result<std::string> page = report::print_report(live.job, journal, {});
     if (!page) return tl::unexpected(page.error());
@@ -92,8 +104,7 @@ Result<int> print(PrintOptions& options) {
     if (options.list_ports) return list_ports(options.live.output);
     if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
     if (Status outputs = check_outputs(options.live); !outputs) return tl::unexpected(outputs.error());
-    if (!options.twin && options.live.port.empty() && !options.live.report.empty())
-        return report_on_journal(options.live);
+    if (!options.twin && options.live.port.empty() && !options.live.report.empty()) return report_on_journal(options);
     if (options.twin == !options.live.port.empty())
         return input_error("say where to print: --port DEVICE (see --list-ports) or --twin");
     if (Status given = check_given_options(options); !given) return tl::unexpected(given.error());
@@ -156,8 +167,11 @@ void add_print(CLI::App& app, int& status) {
         "Keys: space pauses and resumes, c cancels, e is the emergency stop; Ctrl-C parks, --resume continues.\n"
         "Example: pliant print gripper.zip --port /dev/ttyACM0 --projector pictures\n"
         "         pliant print gripper.zip --twin");
-    on_call(*command, status, [options, speed] {
+    on_call(*command, status, [options, speed, command] {
         options->given_speed = speed->count() > 0;
+        for (const CLI::Option* option : command->get_options()) {
+            if (option->count() > 0 && !option->get_positional()) options->given.push_back(option->get_name());
+        }
         return print(*options);
     });
 }

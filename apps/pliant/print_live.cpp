@@ -122,7 +122,7 @@ private:
         if (s.state != State::printing && s.state != State::paused && s.state != State::pausing) return clear();
         shown_ = true;
         fmt::print(stderr, "\r\033[Klayer {}/{}  {:4.1f} %  {} left  {}{}", s.layer + 1, s.layers, 100 * s.completion,
-                   plan::clock_text(s.seconds_left), host::state_text(s.state),
+                   plan::clock_text(s.seconds_left), host::state_text(s),
                    s.lit ? fmt::format("  light {:.1f}/{:.1f} s", s.lit_s, s.exposure_s) : "");
     }
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdlib>
@@ -131,6 +132,40 @@ TEST_CASE("after a controller restart anywhere the light is off; the print resum
     MESSAGE(resumed << " resumed, " << refused << " refused, " << before << " not disturbed");
     CHECK(resumed > deeds / moment_stride / 2);
     CHECK(refused < deeds / moment_stride / 10);
+}
+
+TEST_CASE("after a restart anywhere in a swap by magnet the print resumes, unless the vat was on its way") {
+    const auto bench = [](const std::vector<twin::Fault>& faults) {
+        twin::Options options;
+        options.faults = faults;
+        return std::make_unique<ControlBench>(std::move(options), "tower_magnet", 2);
+    };
+    const auto undisturbed = bench({});
+    undisturbed->start();
+    const std::string whole = block_of(*undisturbed->twin);
+    // Of four exposures the last three begin with a swap; the second one is in the middle of the print.
+    const auto lines = static_cast<int>(undisturbed->snapshot().lines_sent);
+    int resumed = 0, on_its_way = 0;
+    for (int n = lines * 3 / 10; n < lines * 7 / 10; ++n) {
+        CAPTURE(n);
+        const auto b = bench({{twin::Fault::Kind::reset, n, 0}});
+        REQUIRE(b->start());
+        REQUIRE(b->snapshot().can_resume);
+        b->start({true, {}});
+        INFO(b->last_error());
+        if (b->last_error().find("which has let it go") != std::string::npos) {
+            ++on_its_way;
+            continue;
+        }
+        ++resumed;
+        CHECK(b->snapshot().finished);
+        CHECK(block_of(*b->twin) == whole);
+        CHECK(b->twin->log().violations.empty());
+    }
+    MESSAGE(resumed << " resumed, " << on_its_way << " with a vat on its way");
+    CHECK(resumed > 10);
+    CHECK(on_its_way > 0);
+    CHECK(on_its_way < resumed);
 }
 
 TEST_CASE("after a power cut anywhere the print resumes; only an exposure of unknown length is asked about") {
@@ -282,6 +317,56 @@ TEST_CASE("a suspended print parks the machine, and resumes from the same place"
         REQUIRE(b.snapshot().can_resume);
         CHECK_FALSE(b.control->home({}));  // no manual control while a print waits
         b.must_finish({true, {}});
+    }
+}
+
+TEST_CASE("a print that is ended while it resumes parks once the axes are homed, and resumes from the same place") {
+    for (const char* name : {"tower", "tower_magnet", "wall", "carousel", "rotary", "two_towers"}) {
+        CAPTURE(std::string(name));
+        ControlBench undisturbed({}, name, 3);
+        undisturbed.start();
+        const std::string whole = block_of(*undisturbed.twin);
+        const auto until_suspended = [&] {
+            auto b = std::make_unique<ControlBench>(twin::Options{}, name, 3);
+            Operator person(*b, completion_above(0.55), [&] { CHECK(b->control->suspend()); });
+            b->start();
+            REQUIRE(b->snapshot().can_resume);
+            b->new_host();
+            return b;
+        };
+        // The looks of a host while it resumes, up to the first light.
+        int first = 0, last = 0;
+        {
+            const auto b = until_suspended();
+            const int lights = b->lights();
+            int looks = 0;
+            b->life->at_look = [&] {
+                ++looks;
+                const bool resumes = b->snapshot().message.starts_with("resuming: ");
+                if (resumes && first == 0) first = looks;
+                if (resumes && b->lights() == lights) last = looks;
+            };
+            b->must_finish({true, {}});
+        }
+        REQUIRE(last > first);
+        for (int n = first; n <= last; n += std::max(1, (last - first) / 8)) {
+            CAPTURE(n);
+            const auto b = until_suspended();
+            int looks = 0;
+            b->life->at_look = [&] {
+                if (++looks == n) CHECK(b->control->suspend());
+            };
+            b->start({true, {}});
+            INFO(b->last_error());
+            CHECK(b->snapshot().state == State::idle);
+            REQUIRE(b->snapshot().can_resume);
+            CHECK_FALSE(b->twin->interlock().pump_runs());
+            if (b->printer.has_carriage()) CHECK_FALSE(b->twin->interlock().hooked_vat());
+            b->life->at_look = {};
+            b->must_finish({true, {}});
+            CHECK(b->twin->log().violations.empty());
+            CHECK(block_of(*b->twin) == whole);
+        }
     }
 }
 
@@ -947,6 +1032,19 @@ TEST_CASE("a skipped layer is not exposed") {
     CHECK(b.report().missing_layers == 1);
 }
 
+TEST_CASE("a request to skip a layer that had begun before the print was resumed is answered, not dropped") {
+    ControlBench b;
+    Operator person(b, lit_on_layer(2), [&] { CHECK(b.control->suspend()); });
+    b.start();
+    b.new_host();
+    REQUIRE(b.control->start({true, {}}));
+    CHECK(b.control->skip_layer(1));  // the host does not know yet how far the print has come
+    b.control->serve_until_idle();
+    CHECK(has_event(b, "log", "layer 2 has begun, it is not skipped"));
+    CHECK(b.snapshot().finished);
+    b.must_be_whole();
+}
+
 TEST_CASE("resin is asked for before the layer that needs it, and a picture is taken after every layer") {
     ControlBench b;
     b.refills = {{3, 1, "refill the vat of slot 1 with x"}};
@@ -962,6 +1060,51 @@ TEST_CASE("resin is asked for before the layer that needs it, and a picture is t
     CHECK(person.prompts[0] == "refill the vat of slot 1 with x");
     CHECK(pictures == std::vector<int>{0, 1, 2, 3, 4});
     b.must_be_whole();
+}
+
+TEST_CASE("the picture of a layer is taken after resuming if its print ended before the layer was peeled") {
+    for (const bool killed : {false, true}) {
+        CAPTURE(killed);
+        ControlBench b;
+        std::vector<int> pictures;
+        b.after_layer = [&](int layer) { pictures.push_back(layer); };
+        b.new_host();
+        std::size_t ended = 0;
+        b.life->at_look = [&] {
+            // The last exposure of layer 2 is over, and nothing has moved since.
+            if (ended > 0 || b.projector->lit || b.ended.size() != 6) return;
+            ended = b.ended.size();
+            if (killed) b.life->die();
+            CHECK(b.control->suspend());
+        };
+        CHECK(b.start() == !killed);
+        REQUIRE(ended == 6);
+        CHECK(pictures == std::vector<int>{0, 1});
+        b.new_host();
+        int taken_at_um = 0;
+        b.after_layer = [&](int layer) {
+            if (layer == 2) taken_at_um = b.twin->motors_position()[machine::Axis::platform];
+            pictures.push_back(layer);
+        };
+        b.must_finish({true, {}});
+        CHECK(pictures == std::vector<int>{0, 1, 2, 3, 4});
+        CHECK(taken_at_um > 200);  // risen from the floor
+    }
+}
+
+TEST_CASE("a layer that had its picture gets no second one when the print resumes") {
+    ControlBench b;
+    std::vector<int> pictures;
+    b.after_layer = [&](int layer) { pictures.push_back(layer); };
+    b.new_host();
+    Operator person(
+        b, [&](const Snapshot& s) { return s.layer == 2 && pictures.size() == 3; },
+        [&] { CHECK(b.control->suspend()); });
+    b.start();
+    CHECK(person.acted);
+    b.new_host();
+    b.must_finish({true, {}});
+    CHECK(pictures == std::vector<int>{0, 1, 2, 3, 4});
 }
 
 TEST_CASE("manual control: home, bring and put away a vat, clean, jog; interlocks still apply") {
@@ -1012,15 +1155,38 @@ TEST_CASE("commands that the current state does not allow are refused") {
     CHECK(b.snapshot().finished);
 }
 
-TEST_CASE("a request that follows the start at once is not lost") {
+TEST_CASE("a request that follows the start at once is not lost: nothing moves, and the print has not begun") {
+    for (const bool cancels : {false, true}) {
+        ControlBench b;
+        REQUIRE(b.control->start({}));
+        CHECK(host::state_text(b.snapshot()) == "Connecting");
+        CHECK((cancels ? b.control->cancel() : b.control->suspend()));
+        b.control->serve_until_idle();
+        CHECK(b.snapshot().state == State::offline);
+        CHECK(b.snapshot().message == "ended before anything moved");
+        CHECK_FALSE(b.snapshot().finished);
+        CHECK_FALSE(b.snapshot().failed);
+        CHECK_FALSE(b.snapshot().can_resume);
+        CHECK(b.lights() == 0);
+        CHECK(b.twin->log().homings == 0);
+        b.must_finish();
+    }
+}
+
+TEST_CASE("a print that is ended while its host connects to resume it still waits to be resumed") {
     ControlBench b;
-    REQUIRE(b.control->start({}));
-    CHECK(b.control->suspend());
-    b.control->serve_until_idle();
-    CHECK(b.snapshot().state == State::idle);
-    CHECK_FALSE(b.snapshot().finished);
+    b.must_die(400);
+    b.new_host();
+    const int homings = b.twin->log().homings;
+    int looks = 0;
+    b.life->at_look = [&] {
+        if (++looks == 3) CHECK(b.control->suspend());
+    };
+    b.start({true, {}});
+    CHECK(b.snapshot().state == State::offline);
     CHECK(b.snapshot().can_resume);
-    CHECK(b.lights() == 0);
+    CHECK(b.twin->log().homings == homings);
+    b.life->at_look = {};
     b.must_finish({true, {}});
 }
 

@@ -221,6 +221,9 @@ TEST_CASE("an option that would do nothing is refused") {
     for (const auto& [call, said] : {
              std::pair<std::string, std::string>{"print halves.zip --twin --projector .",
                                                  "--projector goes with --port"},
+             {"print halves.zip --report page.html --resume", "--resume goes with --port or --twin"},
+             {"print halves.zip --report page.html --speed 5 -q", "--speed goes with --port or --twin"},
+             {"print halves.zip --report page.html -o verdict.json", "--output goes with --port or --twin"},
              {"print halves.zip --twin --assume-lit 1", "--assume-lit goes with --resume"},
              {"print halves.zip --port none --projector . --assume-lit 1", "--assume-lit goes with --resume"},
              {"print halves.zip --port none --projector . --assume-vats-untouched",

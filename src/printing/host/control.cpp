@@ -37,6 +37,10 @@ std::string_view state_text(State state) {
     return "Error";
 }
 
+std::string_view state_text(const Snapshot& snapshot) {
+    return state_text(snapshot.connecting ? State::connecting : snapshot.state);
+}
+
 std::string job_digest(std::string_view bytes) {
     Digest digest;
     digest.add(bytes.data(), bytes.size());
@@ -50,7 +54,7 @@ bool is_printing(State state) {
 std::function<Status(const Snapshot&)> only_when(std::vector<State> states) {
     return [states = std::move(states)](const Snapshot& s) -> Status {
         if (std::ranges::find(states, s.state) != states.end()) return {};
-        return failure("not possible now: the printer is {}", state_text(s.state));
+        return failure("not possible now: the printer is {}", state_text(s));
     };
 }
 
@@ -67,7 +71,7 @@ Status Control::Private::ask_for(std::optional<State> next, const std::function<
         return allowed(s);
     });
     if (!status) return status;
-    if (next) desk.event("state", std::string(state_text(*next)));
+    if (next) desk.event("state", std::string(state_text(desk.snapshot())));
     {
         const std::scoped_lock lock(mutex);
         tasks.push_back({std::move(task), for_machine, stops});

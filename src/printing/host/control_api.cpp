@@ -6,7 +6,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "base/core/json.hpp"
 
@@ -20,7 +23,7 @@ using machine::Axis;
 
 json state_json(const Snapshot& s) {
     const bool connected = s.state != State::offline && s.state != State::connecting && s.state != State::halted;
-    return {{"text", state_text(s.state)},
+    return {{"text", state_text(s)},
             {"message", s.message},
             {"flags",
              {{"operational", connected},
@@ -151,13 +154,50 @@ ApiAnswer needs(std::string_view what) {
     return refusal(400, fmt::format("the body must have {}", what));
 }
 
+/// A key that a body may have, and what stands there.
+struct Key {
+    enum class Kind { text, number, flag, list };
+    const char* name;
+    Kind kind = Kind::text;
+};
+
+bool has_kind(const json& value, Key::Kind kind) {
+    switch (kind) {
+        case Key::Kind::text:
+            return value.is_string();
+        case Key::Kind::number:
+            return value.is_number();
+        case Key::Kind::flag:
+            return value.is_boolean();
+        case Key::Kind::list:
+            break;
+    }
+    return value.is_array();
+}
+
+/// What is wrong with the keys of the body: a value that would be ignored is a mistake of its sender.
+std::optional<ApiAnswer> wrong_key(const Request& r, std::initializer_list<Key> keys) {
+    constexpr std::array<std::string_view, 4> names = {"a text", "a number", "true or false", "a list"};
+    for (auto given = r.body.begin(); given != r.body.end(); ++given) {
+        const std::string& name = given.key();
+        const auto known = std::ranges::find_if(keys, [&](const Key& key) { return name == key.name; });
+        if (known == keys.end()) return refusal(400, fmt::format("\"{}\" has no meaning here", name));
+        if (!has_kind(*given, known->kind))
+            return refusal(400, fmt::format("\"{}\" must be {}", name, names[static_cast<std::size_t>(known->kind)]));
+        if (known->kind == Key::Kind::number && !r.number(known->name))
+            return refusal(400, fmt::format("\"{}\" is out of range", name));
+    }
+    return std::nullopt;
+}
+
 ApiAnswer get_job(const Request& r) {
     const Snapshot s = r.control.snapshot();
-    return with({{"job", job_json(s)}, {"progress", progress_json(s)}, {"state", state_text(s.state)}});
+    return with({{"job", job_json(s)}, {"progress", progress_json(s)}, {"state", state_text(s)}});
 }
 
 ApiAnswer pause_job(const Request& r) {
     const bool paused = r.control.snapshot().state == State::paused;
+    if (const auto wrong = wrong_key(r, {{"command"}, {"action"}, {"now", Key::Kind::flag}})) return *wrong;
     const std::string action = r.text("action").empty() ? "toggle" : r.text("action");
     if (action == "resume" || (action == "toggle" && paused)) return answer(r.control.resume());
     if (action != "pause" && action != "toggle") return needs(R"("action": "pause", "resume" or "toggle")");
@@ -165,17 +205,25 @@ ApiAnswer pause_job(const Request& r) {
     return answer(r.control.pause(r.flag("now") ? PauseWhen::now : PauseWhen::after_exposure));
 }
 
+ApiAnswer start_job(const Request& r) {
+    const auto wrong = wrong_key(r, {{"command"},
+                                     {"resume", Key::Kind::flag},
+                                     {"assumeLit", Key::Kind::number},
+                                     {"assumeVatsUntouched", Key::Kind::flag}});
+    if (wrong) return *wrong;
+    StartOptions options;
+    options.resume = r.flag("resume");
+    options.assume.lit_s = r.number("assumeLit");
+    options.assume.vats_untouched = r.flag("assumeVatsUntouched");
+    if (r.control.snapshot().job.empty()) return refusal(409, "no job is loaded");
+    return answer(r.control.start(options));
+}
+
 ApiAnswer post_job(const Request& r) {
     const std::string command = r.text("command");
-    if (command == "start") {
-        StartOptions options;
-        options.resume = r.flag("resume");
-        options.assume.lit_s = r.number("assumeLit");
-        options.assume.vats_untouched = r.flag("assumeVatsUntouched");
-        if (r.control.snapshot().job.empty()) return refusal(409, "no job is loaded");
-        return answer(r.control.start(options));
-    }
+    if (command == "start") return start_job(r);
     if (command == "pause") return pause_job(r);
+    if (const auto wrong = wrong_key(r, {{"command"}})) return *wrong;
     if (command == "resume") return answer(r.control.resume());
     if (command == "cancel") return answer(r.control.cancel());
     if (command == "suspend") return answer(r.control.suspend());
@@ -183,6 +231,8 @@ ApiAnswer post_job(const Request& r) {
 }
 
 ApiAnswer post_exposure(const Request& r) {
+    if (const auto wrong = wrong_key(r, {{"material", Key::Kind::number}, {"seconds", Key::Kind::number}}))
+        return *wrong;
     const auto material = r.whole("material");
     const auto seconds = r.number("seconds");
     if (!material || !seconds) return needs(R"("material" (from 0) and "seconds")");
@@ -190,6 +240,7 @@ ApiAnswer post_exposure(const Request& r) {
 }
 
 ApiAnswer post_skip(const Request& r) {
+    if (const auto wrong = wrong_key(r, {{"layer", Key::Kind::number}})) return *wrong;
     const auto layer = r.whole("layer");
     if (!layer) return needs(R"("layer" (from 0))");
     return answer(r.control.skip_layer(*layer));
@@ -197,10 +248,11 @@ ApiAnswer post_skip(const Request& r) {
 
 ApiAnswer get_connection(const Request& r) {
     const Snapshot s = r.control.snapshot();
-    return with({{"current", {{"state", state_text(s.state)}, {"firmware", s.firmware}, {"message", s.message}}}});
+    return with({{"current", {{"state", state_text(s)}, {"firmware", s.firmware}, {"message", s.message}}}});
 }
 
 ApiAnswer post_connection(const Request& r) {
+    if (const auto wrong = wrong_key(r, {{"command"}})) return *wrong;
     const std::string command = r.text("command");
     if (command == "connect") return answer(r.control.connect());
     if (command == "disconnect") return answer(r.control.disconnect());
@@ -221,25 +273,34 @@ std::optional<Axis> axis_named(std::string_view name) {
 }
 
 ApiAnswer jog(const Request& r) {
-    const double feed_mm_s = r.number("speed").value_or(0);
+    const auto wrong = wrong_key(r, {{"command"},
+                                     {"absolute", Key::Kind::flag},
+                                     {"speed", Key::Kind::number},
+                                     {"platform", Key::Kind::number},
+                                     {"carriage", Key::Kind::number},
+                                     {"tower", Key::Kind::number},
+                                     {"table", Key::Kind::number}});
+    if (wrong) return *wrong;
+    std::vector<std::pair<Axis, double>> wanted;
     for (const Axis axis : machine::all_axes) {
-        const auto mm = r.number(std::string(machine::axis_name(axis)).c_str());
-        if (!mm) continue;
-        if (std::abs(*mm) > farthest_mm) return refusal(400, fmt::format("{:g} mm: no machine is so large", *mm));
-        const int um = static_cast<int>(std::lround(*mm * 1000));
-        return answer(r.flag("absolute") ? r.control.move_to(axis, um, feed_mm_s) : r.control.jog(axis, um, feed_mm_s));
+        if (const auto mm = r.number(std::string(machine::axis_name(axis)).c_str())) wanted.emplace_back(axis, *mm);
     }
-    return needs(R"(one of "platform", "carriage", "tower", "table" in mm)");
+    if (wanted.size() != 1) return needs(R"(one of "platform", "carriage", "tower", "table" in mm)");
+    const auto [axis, mm] = wanted.front();
+    if (std::abs(mm) > farthest_mm) return refusal(400, fmt::format("{:g} mm: no machine is so large", mm));
+    const double feed_mm_s = r.number("speed").value_or(0);
+    const int um = static_cast<int>(std::lround(mm * 1000));
+    return answer(r.flag("absolute") ? r.control.move_to(axis, um, feed_mm_s) : r.control.jog(axis, um, feed_mm_s));
 }
 
 ApiAnswer post_axes(const Request& r) {
     const std::string command = r.text("command");
     if (command == "jog") return jog(r);
     if (command != "home") return needs(R"("command": "jog" or "home")");
+    if (const auto wrong = wrong_key(r, {{"command"}, {"axes", Key::Kind::list}})) return *wrong;
     std::vector<Axis> axes;
     const auto listed = r.body.find("axes");
     if (listed != r.body.end()) {
-        if (!listed->is_array()) return needs(R"("axes", a list of names)");
         for (const json& name : *listed) {
             const auto axis = name.is_string() ? axis_named(name.get<std::string>()) : std::nullopt;
             if (!axis) return needs(R"("axes" out of "platform", "carriage", "tower", "table")");
@@ -250,18 +311,21 @@ ApiAnswer post_axes(const Request& r) {
 }
 
 ApiAnswer post_vat(const Request& r) {
+    if (const auto wrong = wrong_key(r, {{"slot", Key::Kind::number}})) return *wrong;
     const auto slot = r.whole("slot");
     if (!slot) return needs(R"("slot" (0: put the vat away))");
     return answer(r.control.bring_vat(*slot));
 }
 
 ApiAnswer post_clean(const Request& r) {
+    if (const auto wrong = wrong_key(r, {{"seconds", Key::Kind::number}})) return *wrong;
     const auto seconds = r.number("seconds");
     if (!seconds) return needs("\"seconds\"");
     return answer(r.control.clean(*seconds));
 }
 
 ApiAnswer post_prime(const Request& r) {
+    if (const auto wrong = wrong_key(r, {{"seconds", Key::Kind::number}})) return *wrong;
     const auto seconds = r.number("seconds");
     if (!seconds) return needs("\"seconds\"");
     return answer(r.control.prime(*seconds));

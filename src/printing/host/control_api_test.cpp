@@ -77,6 +77,35 @@ TEST_CASE("wrong paths, methods and bodies have different statuses") {
     CHECK(b.post("/api/job/skip", {{"layer", 2.5}}).status == 400);
 }
 
+TEST_CASE("a value of the wrong type, an unknown key and a second axis are bad requests, not ignored") {
+    ApiBench b;
+    b.load();
+    const auto refused = [&](const char* path, const json& body) {
+        const ApiAnswer answer = b.post(path, body);
+        CAPTURE(body.dump());
+        CHECK(answer.status == 400);
+        return json::parse(answer.json)["error"].get<std::string>();
+    };
+    CHECK(refused("/api/job", {{"command", "start"}, {"resume", "true"}}) == "\"resume\" must be true or false");
+    CHECK(refused("/api/job", {{"command", "start"}, {"assumeLit", "2"}}) == "\"assumeLit\" must be a number");
+    CHECK(refused("/api/job", {{"command", "start"}, {"assumeLit", nullptr}}) == "\"assumeLit\" must be a number");
+    CHECK(refused("/api/job", {{"command", "start"}, {"assumeLit", 1e300}}) == "\"assumeLit\" is out of range");
+    CHECK(refused("/api/job", {{"command", "start"}, {"assume_lit", 2}}) == "\"assume_lit\" has no meaning here");
+    CHECK(refused("/api/job", {{"command", "pause"}, {"now", 1}}) == "\"now\" must be true or false");
+    CHECK(refused("/api/job", {{"command", 7}}) == "\"command\" must be a text");
+    CHECK(refused("/api/job/exposure", {{"material", 0}, {"seconds", 2}, {"layer", 3}}) ==
+          "\"layer\" has no meaning here");
+    CHECK(refused("/api/printer/axes", {{"command", "home"}, {"axes", "platform"}}) == "\"axes\" must be a list");
+    CHECK(refused("/api/printer/axes", {{"command", "home"}, {"platform", 1}}) == "\"platform\" has no meaning here");
+    for (const json& body : {json{{"command", "jog"}, {"platform", 1}, {"carriage", 1}}, json{{"command", "jog"}}})
+        CHECK(refused("/api/printer/axes", body).find("one of \"platform\"") != std::string::npos);
+    CHECK(refused("/api/printer/axes", {{"command", "jog"}, {"platform", 1}, {"speed", "fast"}}) ==
+          "\"speed\" must be a number");
+    CHECK(refused("/api/printer/axes", {{"command", "jog"}, {"platform", 1}, {"absolute", "yes"}}) ==
+          "\"absolute\" must be true or false");
+    CHECK(b.control.snapshot().state == State::offline);
+}
+
 TEST_CASE("a jog distance beyond the range of int micrometres is refused, not wrapped") {
     ApiBench b;
     REQUIRE(b.post("/api/connection", {{"command", "connect"}}).status == 204);
@@ -115,7 +144,8 @@ TEST_CASE("connect, look, start: the answers follow OctoPrint's API") {
     const double planned_s = job["job"]["estimatedPrintTime"];
     CHECK(planned_s == job["progress"]["printTimeLeft"]);
     CHECK(b.post("/api/job", {{"command", "start"}}).status == 204);
-    CHECK(b.get("/api/job")["state"] == "Printing");
+    CHECK(b.get("/api/job")["state"] == "Connecting");
+    CHECK(b.get("/api/printer")["state"]["flags"]["printing"] == true);
     CHECK(b.post("/api/job", {{"command", "start"}}).status == 409);
     b.control.serve_until_idle();
     job = b.get("/api/job");

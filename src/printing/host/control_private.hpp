@@ -52,7 +52,8 @@ struct Control::Private {
 
     // Working thread only:
     std::unique_ptr<Machine> machine;
-    bool touched = false;  ///< something was sent to the controller since the last start
+    bool connects = false;  ///< until the controller has answered, and whatever is checked before the first command
+    bool touched = false;   ///< something was sent to the controller since the last start
     /// Of the controller when the wire was opened, or before this host only asked questions.
     long last_line = 0;
     long sent_line = 0;  ///< the last one of the link before the present one
@@ -75,6 +76,7 @@ struct Control::Private {
                                  bool one_move = false);
     bool run_next_task();
 
+    [[nodiscard]] Status watch();
     [[nodiscard]] Status open_wire();
     [[nodiscard]] Status open();
     void renew_machine(const LinkOptions& options);
@@ -95,6 +97,7 @@ struct Control::Private {
     [[nodiscard]] Status preflight() const;
     [[nodiscard]] Status check_journal(const JournalFacts& facts) const;
     void finish(const Result<Ending>& ending);
+    void leave();
     void show_machine();
     void show_switches();
     void note_firmware();

@@ -131,13 +131,18 @@ enum class State {
     halted,      ///< after an emergency stop or a restart: connect again
 };
 
+struct Snapshot;
+
 /// "Operational", "Printing", ...: OctoPrint's names.
 [[nodiscard]] std::string_view state_text(State state);
+/// The same; "Connecting" while a print that was started waits for the controller.
+[[nodiscard]] std::string_view state_text(const Snapshot& snapshot);
 /// True from the request to print until the print has ended, also while it is paused.
 [[nodiscard]] bool is_printing(State state);
 
 struct Snapshot {
     State state = State::offline;
+    bool connecting = false;  ///< a print has been started, and the controller has yet to answer
     std::string message;      ///< reason for a stop or wait; for people
     bool failed = false;      ///< the last print ended with an error
     bool finished = false;    ///< the last print is complete

@@ -46,6 +46,7 @@ void Desk::state(State state, std::string message) {
     event("state", std::string(state_text(state)) + (message.empty() ? "" : ": " + message));
     update([&](Snapshot& s) {
         s.state = state;
+        s.connecting = false;
         s.message = std::move(message);
     });
 }
@@ -58,6 +59,7 @@ Status Desk::ask(std::optional<State> next, const std::function<Status(const Sna
         changes_.clear();
         skips_.clear();
     }
+    snapshot_.connecting = *next == State::printing;
     snapshot_.state = *next;
     snapshot_.message.clear();  // of the state before
     return {};

@@ -60,6 +60,7 @@ public:
         if (r.kind == "dark") return dark(r);
         if (r.kind == "exposure") return exposure(r);
         if (r.kind == "skip") return skip(r);
+        if (r.kind == "hook") return hook(r);
         if (r.kind == "stop") return stop(r);
         if (r.kind == "end") facts_.ended = true;
         if (r.kind == "cancel") facts_.cancelled = true;
@@ -171,6 +172,8 @@ private:
         if (!at) return tl::unexpected(at.error());
         const auto index = static_cast<std::size_t>(*step);
         LightFact& fact = facts_.lights[index];
+        open_.erase(fact.open_light);
+        open_[r.number] = index;
         fact.record = r.number;
         fact.layer = static_cast<int>(*layer);
         fact.material = static_cast<int>(*material);
@@ -188,14 +191,14 @@ private:
         if (!on) return tl::unexpected(on.error());
         constexpr double clock_step_s = 1;  // back, which a light that was just switched on may be measured across
         if (!(*on > -clock_step_s)) return input_error("journal record {} (dark): on={:g} is below 0", r.number, *on);
-        for (auto& [step, fact] : facts_.lights) {
-            if (fact.open_light != *light || *light == 0) continue;
-            fact.open_light = 0;
-            fact.lit_s += std::max(0.0, *on);
-            fact.complete = *done != 0;
-            return {};
-        }
-        return input_error("journal record {} (dark): light {} was not on", r.number, *light);
+        const auto open = open_.find(*light);
+        if (open == open_.end()) return input_error("journal record {} (dark): light {} was not on", r.number, *light);
+        LightFact& fact = facts_.lights[open->second];
+        open_.erase(open);
+        fact.open_light = 0;
+        fact.lit_s += std::max(0.0, *on);
+        fact.complete = *done != 0;
+        return {};
     }
     Status exposure(const JournalRecord& r) {
         const auto material = index(r, "material"), from = index(r, "from");
@@ -213,6 +216,12 @@ private:
         facts_.skip_records.push_back(r.number);
         return {};
     }
+    Status hook(const JournalRecord& r) {
+        const auto layer = index(r, "layer");
+        if (!layer) return tl::unexpected(layer.error());
+        facts_.hook = HookFact{*layer, r.number};
+        return {};
+    }
     Status stop(const JournalRecord& r) {
         const auto quick = r.whole("quick");
         if (!quick) return tl::unexpected(quick.error());
@@ -226,6 +235,7 @@ private:
     }
 
     JournalFacts& facts_;
+    std::map<long, std::size_t> open_;  ///< by record of a light without a `dark`: its step
 };
 
 }  // namespace

@@ -50,6 +50,12 @@ struct ChangeFact {
     long record = 0;
 };
 
+/// The last layer for which the command of the operator was run.
+struct HookFact {
+    int layer = 0;
+    long record = 0;
+};
+
 struct JournalFacts {
     std::string job, digest, printer;
     std::string boot;      ///< boot identifier of the computer in the last session
@@ -66,6 +72,7 @@ struct JournalFacts {
     std::optional<std::size_t> last_light;              ///< step of the last exposure
     std::map<long, std::vector<std::string>> programs;  ///< commands of inserted programs, by record
     std::optional<GoFact> go;
+    std::optional<HookFact> hook;
     std::vector<ChangeFact> changes;
     std::vector<int> skipped_layers;
     std::vector<long> skip_records;  ///< parallel to those that the journal holds

@@ -261,7 +261,7 @@ Status Machine::send(long program, std::size_t step, std::string_view command) {
     return alone ? after_homing(command) : Status{};
 }
 
-Status Machine::run(std::string_view program) {
+Status Machine::run(std::string_view program, const std::function<Status()>& before_each) {
     long number = 1;
     if (journal_ != nullptr) {
         const auto noted = journal_->append("program", {{"text", std::string(program)}});
@@ -271,6 +271,7 @@ Status Machine::run(std::string_view program) {
     }
     const std::vector<std::string> commands = commands_of(program);
     for (std::size_t i = 0; i < commands.size(); ++i) {
+        if (Status status = before_each ? before_each() : Status{}; !status) return status;
         if (Status status = send(number, i, commands[i]); !status) return status;
     }
     if (Status status = rest(); !status) return status;

@@ -2,6 +2,7 @@
 // later host could not reconstruct.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,8 +41,9 @@ public:
     /// pressed is stuck. Before a vat is taken, left or carried, the machine comes to rest and the journal records it.
     /// Errors: forbidden by the interlocks, journal, link.
     [[nodiscard]] Status send(long program, std::size_t step, std::string_view command);
-    /// Sends a program that is not part of the job, and waits until it is done.
-    [[nodiscard]] Status run(std::string_view program);
+    /// Sends a program that is not part of the job, and waits until it is done. `before_each` is called before every
+    /// command; an error of it ends the program there.
+    [[nodiscard]] Status run(std::string_view program, const std::function<Status()>& before_each = {});
     /// Waits until the machine stands still.
     [[nodiscard]] Status rest();
     /// The same, and checks that the controller's reported position is the expected one. A controller that cannot

@@ -75,7 +75,9 @@ Result<Ending> PrintRun::resume(const Recovery& recovery) {
     if (Status status = projector_.black(); !status) return tl::unexpected(status.error());
     const auto program = run_.setup.programs.resume(recovery);
     if (!program) return tl::unexpected(program.error());
-    if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());
+    const Status there_again = run_.machine.run(*program, [this] { return on_the_way(); });
+    if (!there_again && there_again.error().cause == Cause::cancelled) return park_as_wished();
+    if (!there_again) return tl::unexpected(there_again.error());
     if (recovery.finished) {
         if (Status status = note("end", {}); !status) return tl::unexpected(status.error());
         return Ending::finished;
@@ -85,6 +87,20 @@ Result<Ending> PrintRun::resume(const Recovery& recovery) {
     if (!there) return failure("the program for resuming does not end where the next exposure begins");
     run_.desk.update([](Snapshot& s) { s.message.clear(); });  // it has resumed
     return steps_from(next_light(facts_, run_.script));
+}
+
+/// Before each command that brings the print back to where it was: the hook that the last layer has not had, and the
+/// wish to end it, which can be granted once all axes are homed. A pause waits for the vat.
+Status PrintRun::on_the_way() {
+    const machine::Interlock& state = run_.machine.state();
+    const Wishes wishes = run_.desk.wishes();
+    const bool ends = wishes.cancel || wishes.suspend, pauses = wishes.pause_now || wishes.pause_after;
+    if (ends && state.all_homed()) return wish_to_end();
+    if (ends && !std::exchange(told_of_end_, true)) run_.desk.event("log", "the print ends when the axes are homed");
+    if (pauses && !std::exchange(told_of_pause_, true))
+        run_.desk.event("log", "the print pauses when the vat is in its place");
+    const bool is_up = state.homed(Axis::platform) && state.position()[Axis::platform] > state.part_height_um();
+    return is_up && owes_hook_ ? call_hook() : Status{};
 }
 
 Result<Ending> PrintRun::abandon(const Recovery& recovery) {
@@ -103,7 +119,10 @@ void PrintRun::recall_layer(std::size_t next) {
     if (!facts_.last_light) return;
     const LightFact& last = facts_.lights.at(*facts_.last_light);
     layer_ = last.layer;
-    hooked_layer_ = next_layer(next) == layer_ ? layer_ - 1 : layer_;
+    const bool is_whole = next_layer(next) != layer_;
+    const bool is_hooked = is_whole && facts_.hook && facts_.hook->layer >= layer_;
+    hooked_layer_ = is_hooked ? layer_ : layer_ - 1;
+    owes_hook_ = run_.setup.after_layer && is_whole && !is_hooked;
     run_.desk.update([&](Snapshot& s) {
         s.layer = last.layer;
         s.material = last.material;
@@ -126,8 +145,7 @@ Result<Ending> PrintRun::steps_from(std::size_t first) {
             const auto* command = std::get_if<std::string>(&run_.script.steps[i]);
             status = command != nullptr ? run_.machine.send(0, i, *command) : expose(i);
         }
-        if (!status && status.error().cause == Cause::cancelled)
-            return park(run_.desk.wishes().cancel ? Ending::cancelled : Ending::suspended);
+        if (!status && status.error().cause == Cause::cancelled) return park_as_wished();
         if (!status) return tl::unexpected(status.error());
         if (is_waited_for(run_.script.steps[i])) reach(i + 1);
     }
@@ -308,9 +326,7 @@ Status PrintRun::between_layers(std::size_t step) {
     if (!hook && run_.job.refills.empty()) return {};
     const int next = next_layer(step);
     if (hook && next != layer_) {
-        hooked_layer_ = layer_;
-        if (Status status = run_.machine.rest(); !status) return status;
-        run_.setup.after_layer(layer_);
+        if (Status status = call_hook(); !status) return status;
     }
     for (const Refill& refill : run_.job.refills) {
         if (refill.layer != next || refilled_layer_ >= next || next == layer_) continue;
@@ -318,6 +334,15 @@ Status PrintRun::between_layers(std::size_t step) {
         return pause(refill.text);
     }
     return {};
+}
+
+/// The journal knows of it afterwards: if this program dies meanwhile, it is called again rather than never.
+Status PrintRun::call_hook() {
+    owes_hook_ = false;
+    hooked_layer_ = layer_;
+    if (Status status = run_.machine.rest(); !status) return status;
+    run_.setup.after_layer(layer_);
+    return note("hook", {{"layer", fmt::format("{}", layer_)}});
 }
 
 Status PrintRun::keep_changes() {
@@ -337,7 +362,10 @@ Status PrintRun::keep_changes() {
                                            material_text(run_.job.materials, change.material), change.seconds));
     }
     for (const int layer : run_.desk.take_skips()) {
-        if (layer <= layer_) continue;
+        if (layer <= layer_) {  // it has begun since the request was accepted
+            run_.desk.event("log", fmt::format("{} has begun, it is not skipped", layer_text(layer)));
+            continue;
+        }
         if (Status status = note("skip", {{"layer", fmt::format("{}", layer)}}); !status) return status;
         facts_.skipped_layers.push_back(layer);
         run_.desk.event("log", fmt::format("{} will be skipped", layer_text(layer)));
@@ -428,6 +456,10 @@ Result<Ending> PrintRun::wait_to_park(Ending ending) {
 }
 
 // The end.
+
+Result<Ending> PrintRun::park_as_wished() {
+    return park(run_.desk.wishes().cancel ? Ending::cancelled : Ending::suspended);
+}
 
 Result<Ending> PrintRun::park(Ending ending) {
     (void)projector_.black();

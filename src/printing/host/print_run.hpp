@@ -50,6 +50,7 @@ public:
     void make_safe(const Error& error);
 
 private:
+    [[nodiscard]] Status on_the_way();
     [[nodiscard]] Result<Ending> steps_from(std::size_t step);
     [[nodiscard]] Status expose(std::size_t step);
     /// `entry`: the image's name in the job.
@@ -57,6 +58,7 @@ private:
     [[nodiscard]] Status burn(double until_s, double before_s, bool& whole);
     [[nodiscard]] Status serve_wishes(std::size_t step);
     [[nodiscard]] Status between_layers(std::size_t step);
+    [[nodiscard]] Status call_hook();
     [[nodiscard]] Status keep_changes();
     [[nodiscard]] Status pause(const std::string& prompt);
     [[nodiscard]] Status hold_for_door();
@@ -66,6 +68,7 @@ private:
     [[nodiscard]] Result<Ending> wait_to_park(Ending ending);
     [[nodiscard]] bool door_is_open() const { return run_.machine.door_open().value_or(false); }
     void show_switches();
+    [[nodiscard]] Result<Ending> park_as_wished();
     [[nodiscard]] Result<Ending> park(Ending ending);
     [[nodiscard]] Status note(std::string_view kind, const JournalValues& values);
     [[nodiscard]] double exposure_s(const machine::Expose& light) const;
@@ -85,11 +88,13 @@ private:
     double begin_s_;
     // Planned seconds of the job: reached for certain (and when), sent, shown.
     double reached_s_ = 0, reached_at_s_ = 0, sent_s_ = 0, done_s_ = 0;
-    bool waits_ = false;       ///< waiting for resume(), which does not count as time of the job
-    int layer_ = -1;           ///< of the last exposure, also before this print was resumed
-    int told_layer_ = -1;      ///< of the last event "layer"
-    int hooked_layer_ = -1;    ///< last layer for which after_layer was called
-    int refilled_layer_ = -1;  ///< last layer before which a refill was requested
+    bool waits_ = false;      ///< waiting for resume(), which does not count as time of the job
+    int layer_ = -1;          ///< of the last exposure, also before this print was resumed
+    int told_layer_ = -1;     ///< of the last event "layer"
+    int hooked_layer_ = -1;   ///< last layer for which after_layer was called
+    bool owes_hook_ = false;  ///< that of the last layer before this print was resumed
+    bool told_of_end_ = false, told_of_pause_ = false;  ///< when it will be, while the print resumes
+    int refilled_layer_ = -1;                           ///< last layer before which a refill was requested
     long last_record_ = 0;
     bool without_guard_ = false;  ///< it has ended, and that was said
     bool journal_failed_ = false;

@@ -23,6 +23,18 @@ long new_base(const Clock& clock, long last) {
 
 }  // namespace
 
+/// What is to end while it connects ends at once: nothing has moved, so there is nothing to park. An interrupted print
+/// that is being discarded is not kept by a second request to cancel it.
+Status Control::Private::watch() {
+    if (Status status = desk.watch(); !status || !connects) return status;
+    const Wishes wishes = desk.wishes();
+    const State state = desk.state();
+    const bool cancels = wishes.cancel && state != State::cancelling;
+    const bool unwanted = is_printing(state) && (cancels || wishes.suspend);
+    const std::scoped_lock lock(mutex);
+    return unwanted || quitting ? Status(cancelled()) : Status{};
+}
+
 /// Opening may take seconds; an emergency stop must not wait for it.
 Status Control::Private::open_wire() {
     auto opened = setup.open_wire();
@@ -62,7 +74,7 @@ void Control::Private::renew_machine(const LinkOptions& options) {
 }
 
 void Control::Private::hear_machine() {
-    machine->link().set_watch([this] { return desk.watch(); });
+    machine->link().set_watch([this] { return watch(); });
     machine->link().set_listener([this](std::string_view line) {
         machine->hear(line);
         for (const std::string_view told : {"//action:prompt_begin", "//action:notification", "echo:busy: paused"}) {
@@ -140,10 +152,21 @@ void Control::Private::fail(const Error& error) {
     desk.clear_stop();
 }
 
+/// It was ended while it waited for the controller.
+void Control::Private::leave() {
+    constexpr const char* what = "ended before anything moved";
+    close();
+    desk.event("log", what);
+    desk.state(State::offline, what);
+}
+
 void Control::Private::do_connect() {
     desk.clear_stop();
+    connects = true;
     Status status = open();
     if (status) status = machine->connect(last_base = new_base(setup.clock, std::max(last_line, last_base)));
+    connects = false;
+    if (!status && status.error().cause == Cause::cancelled) return leave();
     if (!status) return fail(status.error());
     note_firmware();
     show_machine();
@@ -272,6 +295,7 @@ Result<Ending> Control::Private::print_anew(Journal* journal) {
         if (Status status = begin_journal(*journal, base, standing); !status) return tl::unexpected(status.error());
         machine->keep(journal);
     }
+    connects = false;
     PrintRun run({setup, *job, script, times, *machine, journal, desk}, {});
     Result<Ending> ending = run.print();
     if (!ending) run.make_safe(ending.error());
@@ -304,6 +328,7 @@ Result<Ending> Control::Private::go_on(const StartOptions& options, bool abandon
     if (Status status = note_session(journal, base, from); !status) return tl::unexpected(status.error());
     if (Status status = connect_machine(base, &journal); !status) return tl::unexpected(status.error());
     if (Status status = preflight(); !status) return tl::unexpected(status.error());
+    connects = false;
     PrintRun run({setup, *job, script, times, *machine, &journal, desk}, std::move(*facts));
     Result<Ending> ending = abandon ? run.abandon(*recovery) : run.resume(*recovery);
     if (!ending) run.make_safe(ending.error());
@@ -338,6 +363,7 @@ void Control::Private::do_start(const StartOptions& options, bool abandon) {
         const std::scoped_lock lock(mutex);
         if (quitting) return desk.state(machine ? State::idle : State::offline);
     }
+    connects = true;
     Result<Ending> ending = Ending::finished;
     if (job->journal.empty()) {
         ending = print(options, abandon, nullptr);
@@ -349,6 +375,7 @@ void Control::Private::do_start(const StartOptions& options, bool abandon) {
 }
 
 void Control::Private::finish(const Result<Ending>& ending) {
+    connects = false;
     (void)setup.projector.black();
     look_at_journal();
     if (!ending && !touched) {  // refused before anything was sent to the machine
@@ -356,6 +383,7 @@ void Control::Private::finish(const Result<Ending>& ending) {
         desk.update([](Snapshot& s) { s.failed = true; });
         return desk.state(machine ? State::idle : State::offline, ending.error().message);
     }
+    if (!ending && ending.error().cause == Cause::cancelled) return leave();
     if (!ending) return fail(ending.error());
     show_machine();
     machine->keep(nullptr);

@@ -98,6 +98,8 @@ Status check_fits(const JournalFacts& facts, const Script& script, const PrintJo
         if (facts.skipped_layers[i] >= ends.layers)
             return wrong(facts.skip_records[i], "skip", fmt::format("layer {}", facts.skipped_layers[i]));
     }
+    if (facts.hook && facts.hook->layer >= ends.layers)
+        return wrong(facts.hook->record, "hook", fmt::format("layer {}", facts.hook->layer));
     for (const ChangeFact& change : facts.changes) {
         if (change.material >= ends.materials)
             return wrong(change.record, "exposure", fmt::format("material {}", change.material));

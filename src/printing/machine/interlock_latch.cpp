@@ -12,10 +12,11 @@ Status Interlock::output(const Command& command) {
 
 // The magnet.
 
-/// Switched off, it releases its vat where that is; switched on, it takes the vat before it.
+/// Switched off, it releases its vat where that is; switched on, it takes the vat before it. After a stop the axes are
+/// where they stopped, although they count as not homed: a vat that then stands in its slot can be taken and released.
 Status Interlock::magnet(bool on) {
-    const bool at_store = position_[Axis::carriage] == printer_->carriage.tower_um && homed(Axis::carriage);
-    const auto slot = at_store && homed(Axis::tower) ? level_slot(position_) : std::nullopt;
+    const bool at_store = position_[Axis::carriage] == printer_->carriage.tower_um;
+    const auto slot = at_store ? level_slot(position_) : std::nullopt;
     auto* place = slot ? &slots_[static_cast<std::size_t>(*slot - 1)] : nullptr;
     if (on) {
         // A magnet that was switched off by a stop of the firmware takes the same vat again.

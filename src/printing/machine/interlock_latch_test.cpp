@@ -80,6 +80,20 @@ TEST_CASE("after a stop the carriage neither moves nor homes before the magnet i
     CHECK(again->magnet_holds());
 }
 
+TEST_CASE("after a stop at the tower the magnet can take and release the vat that stands in its slot") {
+    LatchBench b("tower_magnet");
+    take_by_magnet(b);
+    b.lock.stopped_at(b.lock.position());
+    b.must(b.lock.magnet(false));
+    CHECK(b.lock.vat_in_slot(1) == 0);
+    CHECK_FALSE(b.lock.hooked_vat());
+    b.must(b.lock.magnet(true));
+    CHECK(b.lock.hooked_vat() == 0);
+    b.must(b.lock.home(Axis::platform));
+    b.must(b.lock.home(Axis::carriage));
+    b.refused(b.lock.magnet(false), "switched off while it holds a vat outside its slot");
+}
+
 TEST_CASE("axes wait until a magnet or fork has finished taking or releasing a vat") {
     LatchBench b("tower_magnet");
     Settling settling(b.printer);

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -119,6 +120,22 @@ TEST_CASE("waiting for an answer ends by the printer's clock, and does not outla
     CHECK(clock->now() < 3.15);  // one step of the clock too long at most
     host::ClockedWire dead(std::make_unique<SilentWire>(nullptr), *clock);
     CHECK(dead.read(0.01).value().empty());
+}
+
+TEST_CASE("a clock that never moves is that of another printer: an error, before anything is waited for by it") {
+    const pliant::test::Folder folder;
+    const auto clock = ClockFile::create(folder.path() / "clock");
+    REQUIRE(clock.has_value());
+    host::ClockedWire still(std::make_unique<SilentWire>(nullptr), *clock, 0.2);
+    Result<std::string> heard = still.read(0.01);
+    for (int i = 0; heard.has_value() && i < 1000; ++i) heard = still.read(0.01);
+    REQUIRE_FALSE(heard.has_value());
+    CHECK(heard.error().message == "the clock does not move; is it that of this printer?");
+    constexpr double most_still_s = 0.5;
+    host::ClockedWire moving(std::make_unique<SilentWire>(&*clock), *clock, most_still_s);
+    CHECK(moving.read(0.1).has_value());
+    std::this_thread::sleep_for(std::chrono::duration<double>(1.2 * most_still_s));
+    CHECK(moving.read(0.1).has_value());
 }
 
 TEST_CASE("a file that is not a clock is refused, and not changed") {

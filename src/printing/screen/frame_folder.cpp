@@ -2,15 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "base/core/files.hpp"
+#include "base/core/parse_all.hpp"
 #include "printing/job/png.hpp"
 
 namespace pliant::host {
 namespace {
 
 constexpr const char* shown_name = "shown.png";
+
+/// The highest number of an image that an earlier process has kept; 0: none.
+Result<int> last_kept(const std::filesystem::path& folder) {
+    constexpr int most = 1'000'000'000;
+    int last = 0;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::filesystem::path name = entry->path().filename();
+        int number = 0;
+        const bool is_kept = name.extension() == ".png" && parse_all(name.stem().string(), number);
+        if (is_kept && number <= most) last = std::max(last, number);
+    }
+    if (error) return input_error("{}: {}", folder.string(), error.message());
+    return last;
+}
 
 }  // namespace
 
@@ -20,7 +38,9 @@ Result<FrameFolder> FrameFolder::open(const std::filesystem::path& folder, int w
     if (error) return input_error("{}: {}", folder.string(), error.message());
     std::filesystem::remove(folder / shown_name, error);
     if (error) return input_error("{}: {}", (folder / shown_name).string(), error.message());
-    return FrameFolder(folder, width_px, height_px);
+    const Result<int> kept = last_kept(folder);
+    if (!kept) return tl::unexpected(kept.error());
+    return FrameFolder(folder, width_px, height_px, *kept);
 }
 
 FrameFolder::FrameFolder(FrameFolder&& other) noexcept

@@ -11,7 +11,7 @@
 namespace pliant::host {
 
 /// 60 frames per second. At the end of an exposure its image is kept as 00001.png, 00002.png, ... in the folder, which
-/// is created if missing; older images are overwritten. The destructor removes `shown.png`.
+/// is created if missing; the numbers go on after those that it holds. The destructor removes `shown.png`.
 class FrameFolder final : public Panel {
 public:
     /// Errors: the folder cannot be created or written to.
@@ -26,13 +26,13 @@ public:
     [[nodiscard]] Result<double> present(const job::Image* image) override;
 
 private:
-    FrameFolder(std::filesystem::path folder, int width_px, int height_px)
-        : folder_(std::move(folder)), width_px_(width_px), height_px_(height_px) {}
+    FrameFolder(std::filesystem::path folder, int width_px, int height_px, int kept)
+        : folder_(std::move(folder)), width_px_(width_px), height_px_(height_px), shown_(kept) {}
     [[nodiscard]] Status put_out();
 
     std::filesystem::path folder_;
     int width_px_ = 0, height_px_ = 0;
-    int shown_ = 0;                    ///< number of exposures so far
+    int shown_ = 0;                    ///< number of the last image
     const job::Image* lit_ = nullptr;  ///< image in `shown.png`
     Pacer pacer_{1.0 / 60};
 };

@@ -80,6 +80,19 @@ TEST_CASE("exposures appear in the folder, end by themselves, are measured, and 
     for (int i = 1; i <= 4; ++i) CHECK(folder.image("0000" + std::to_string(i) + ".png") == noise(i));
 }
 
+TEST_CASE("a later projector keeps the images of an earlier one: its numbers go on") {
+    Folder folder("later");
+    for (int run = 0; run < 2; ++run) {
+        auto projector = ScreenProjector::open(folder.path.string(), options());
+        REQUIRE_MESSAGE(projector, (projector ? "" : projector.error().message));
+        for (int i = 1; i <= 2; ++i) {
+            REQUIRE(projector->show_for(noise(2 * run + i), 0.05));
+            REQUIRE(projector->finish());
+        }
+    }
+    for (int i = 1; i <= 4; ++i) CHECK(folder.image("0000" + std::to_string(i) + ".png") == noise(i));
+}
+
 TEST_CASE("an exposure ends without the host, and a new one replaces a running one") {
     Folder folder("stalled");
     auto projector = ScreenProjector::open(folder.path.string(), options());

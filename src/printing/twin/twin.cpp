@@ -192,8 +192,7 @@ void Twin::let_go() {
     lets_go_s_.reset();
     outputs_off();
     log_.power_cut = printer_.emergency_line.signal == machine::EmergencyLine::Signal::controller;
-    drop_vat();
-    motors_.release(now_s_);
+    lose_power();
 }
 
 /// Homing to a dead switch ends here, for whatever reason.
@@ -234,8 +233,7 @@ void Twin::reset() {
     note_push();
     lets_go_s_.reset();
     held_until_s_ = 0;
-    drop_vat();
-    motors_.release(now_s_);
+    lose_power();
     reader_.reset();
     buffer_.clear();
     arriving_.clear();

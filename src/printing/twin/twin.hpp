@@ -183,7 +183,7 @@ private:
     void switch_pump(bool on, double at_s);
     void switch_latch(const machine::Command& command, double at_s);
     void miss_vat(const std::optional<int>& tray);
-    void drop_vat();
+    void lose_power();
     void switch_fans(const machine::Command& command, double at_s);
     void open_door();
     void note_vat(std::optional<int> before);

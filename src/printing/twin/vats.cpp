@@ -78,15 +78,19 @@ void Twin::miss_vat(const std::optional<int>& tray) {
     mishap(fmt::format("the vat of slot {} is not where the retriever thinks", slot_of(left_vat_)));
 }
 
-/// Without power the magnet releases its vat, which is secure only in its slot or under the platform.
-void Twin::drop_vat() {
+/// Without power the motors stop, and the magnet releases its vat: it stays in its slot, or under the platform, and
+/// falls anywhere else.
+void Twin::lose_power() {
     const machine::Switch& coil = printer_.hooks.magnet.coil;
+    const bool needs_power = !coil.on.empty() && !machine::on_without_power(coil);
+    const bool held = needs_power && interlock().magnet_holds();
+    motors_.release(now_s_);
     const std::optional<int> vat = interlock().hooked_vat();
-    if (coil.on.empty() || machine::on_without_power(coil) || !vat || !interlock().magnet_holds()) return;
+    if (!held || !vat) return;
     const machine::Carriage& c = printer_.carriage;
-    const int at_um = motors_position()[Axis::carriage];
-    const bool rests = at_um == c.tower_um || (at_um >= c.print_um && at_um <= c.print_um + c.shear_um);
-    if (rests) return;
+    const int at_um = interlock().position()[Axis::carriage];
+    if (at_um >= c.print_um && at_um <= c.print_um + c.shear_um) return;
+    if (motors_.interlock().magnet(false)) return note_vat(vat);
     missed_vat_ = *vat;
     mishap(fmt::format("the vat of slot {} falls: its magnet has no power", slot_of(*vat)));
 }

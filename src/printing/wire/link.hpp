@@ -34,6 +34,7 @@ struct LinkOptions {
     double most_refused = 0.2;
     double talk_s = 60;           ///< maximum time that a controller which is not busy may send other lines before it
                                   ///< answers connect()
+    double busy_s = 300;          ///< maximum time that connect() waits for a controller that reports `busy`
     int most_connects = 10;       ///< consecutive silences before connect() gives up
     double watch_every_s = 0.02;  ///< longest interval between calls of the watch while waiting
     bool may_be_halted = false;   ///< the last session ended with an emergency stop or a halt, which explains silence

@@ -24,6 +24,10 @@ Status Link::wait_for_answer(double begin_s, const std::function<bool()>& answer
     while (!answered() && clock_.now() < end) {
         if (clock_.now() > std::max(begin_s, busy_s_) + options_.talk_s)
             return failure("the printer talks but does not answer; is this its port and its baud rate?");
+        if (clock_.now() > begin_s + options_.busy_s)
+            return failure(
+                "the printer has been busy for {:.0f} s and does not answer; wait until it stands still, or reset it",
+                options_.busy_s);
         const auto heard = hear(end - clock_.now());
         if (!heard) return tl::unexpected(heard.error());
         if (*heard) end = clock_.now() + options_.boot_s;

@@ -243,6 +243,15 @@ TEST_CASE("a printer that sends other lines:") {
         CHECK_FALSE(b.link.last_line());
         CHECK(b.clock.now_s < 200);
     }
+    SUBCASE("one that is busy for ever is given up later") {
+        Bench b([](const std::string&) { return std::string(); });
+        b.wire.talk = "echo:busy: processing\n";
+        const Status connected = b.link.connect();
+        REQUIRE_FALSE(connected);
+        CHECK(holds(connected.error().message, "has been busy for 300 s"));
+        CHECK(b.clock.now_s > 300);
+        CHECK(b.clock.now_s < 330);
+    }
     SUBCASE("a lost ok is found all the same") {
         int seen = 0;
         Bench b(

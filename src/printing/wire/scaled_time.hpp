@@ -41,13 +41,15 @@ private:
 };
 
 /// Waits for answers in the time of a clock that another process moves on; never longer than the same time on this
-/// computer's clock, since that process may have died. `clock` must outlive it.
+/// computer's clock, since that process may have died. A clock that has not moved since the wire was opened is that of
+/// an earlier process, and an error. `clock` must outlive it.
 class ClockedWire final : public Wire {
 public:
-    ClockedWire(std::unique_ptr<Wire> wire, const Clock& clock) : wire_(std::move(wire)), clock_(clock) {}
+    ClockedWire(std::unique_ptr<Wire> wire, const Clock& clock, double most_still_s = 5)
+        : wire_(std::move(wire)), clock_(clock), first_s_(clock.now()), most_still_s_(most_still_s) {}
     [[nodiscard]] Status write(std::string_view bytes) override { return wire_->write(bytes); }
     [[nodiscard]] Result<std::string> read(double timeout_s) override {
-        using Real = std::chrono::steady_clock;
+        if (stands_still()) return failure("the clock does not move; is it that of this printer?");
         constexpr std::chrono::microseconds look_every(200);
         const double end_s = clock_.now() + timeout_s;
         const auto latest = Real::now() + std::chrono::duration<double>(timeout_s);
@@ -60,8 +62,19 @@ public:
     [[nodiscard]] Status reset() override { return wire_->reset(); }
 
 private:
+    using Real = std::chrono::steady_clock;
+
+    [[nodiscard]] bool stands_still() {
+        moved_ = moved_ || clock_.now() != first_s_;
+        return !moved_ && Real::now() - opened_ > std::chrono::duration<double>(most_still_s_);
+    }
+
     std::unique_ptr<Wire> wire_;
     const Clock& clock_;
+    double first_s_;
+    double most_still_s_;
+    Real::time_point opened_ = Real::now();
+    bool moved_ = false;
 };
 
 }  // namespace pliant::host
