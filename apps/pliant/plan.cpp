@@ -3,11 +3,13 @@
 
 #include <fmt/core.h>
 
+#include "base/core/text.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "overcure.hpp"
 #include "presentation/print_report/plan_picture.hpp"
+#include "printing/machine/image_room.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/plan/timeline.hpp"
 #include "spray_plan.hpp"
@@ -31,9 +33,11 @@ Status make_plan(const PlanOptions& options) {
     on_signal(OnSignal::leave);
     Result<operate::OpenJob> job = read_job(options.job);
     if (!job) return tl::unexpected(job.error());
+    std::vector<std::string> otherwise;
     if (!options.printer.empty()) {
         Result<machine::Printer> other = read_printer(options.printer);
         if (!other) return tl::unexpected(other.error());
+        otherwise = machine::other_images(job->printer.projector, other->projector);
         job->printer = std::move(*other);
     }
     const Result<std::optional<SprayResult>> spray = look_at_spray(options.spray, job->archive, job->printer);
@@ -42,6 +46,10 @@ Status make_plan(const PlanOptions& options) {
     manifest.any_vat = manifest.any_vat || options.any_vat;
     Result<plan::Plan> plan = plan::make_plan(manifest, job->printer);
     if (!plan) return tl::unexpected(plan.error());
+    if (!otherwise.empty())
+        plan->warnings.push_back(fmt::format(
+            "the job was sliced for another {} of the projector: before it is printed on {}, slice it again for that",
+            join_names(otherwise), job->printer.name));
     if (options.printer.empty()) {  // the images are for the job's own projector
         const Result<std::vector<std::string>> overcure = overcure_warnings(job->archive, *plan, job->printer);
         if (!overcure) return tl::unexpected(overcure.error());

@@ -27,6 +27,7 @@ namespace {
 struct SliceOptions {
     prepare::Order order;
     std::string printer, job, picture, paint;
+    bool spaced_alone = false;  ///< --spacing without --copies
     Output output;
 };
 
@@ -136,6 +137,7 @@ Status read_paint(const std::string& file, prepare::Order& order) {
 }
 
 Status slice(SliceOptions& options) {
+    if (options.spaced_alone) return input_error("--spacing: needs --copies");
     Status named = check_ending("-o", options.job, "a job", ".zip");
     if (named) named = check_ending("--picture", options.picture, "a picture", ".png");
     if (named) named = check_file_places({options.job, options.picture});
@@ -237,7 +239,10 @@ void add_slice(CLI::App& app, int& status) {
     command->footer(
         "Example: pliant slice examples/cable_gripper/gripper.toml "
         "--printer examples/printers/tower.toml -o gripper.zip");
-    on_call(*command, status, [options] { return slice(*options); });
+    on_call(*command, status, [options, command] {
+        options->spaced_alone = command->count("--spacing") > 0 && command->count("--copies") == 0;
+        return slice(*options);
+    });
 }
 
 }  // namespace pliant::app

@@ -452,15 +452,26 @@ test('a face can be laid on the platform from any rotation; angles are those of 
 
 test('copies are arranged in rows within the image, and too many do not fit', () => {
   const bar = new Float32Array([0, 0, 0, 40, 10, 5]);
-  const one = page.placed(bar, [0, 0, 0], 1, 2, [100, 60], 50);
+  const room = { image: [100, 60], offset: [0, 0], turn: 0, platform: [200, 200] };
+  const one = page.placed(bar, [0, 0, 0], 1, 2, room, 50);
   assert.deepEqual(one.size, [40, 10, 5]);
-  const five = page.placed(bar, [0, 0, 0], 5, 2, [100, 60], 50);
+  const five = page.placed(bar, [0, 0, 0], 5, 2, room, 50);
   assert.deepEqual(five.size, [82, 34, 5]); // two in a row, three rows
   assert.deepEqual(five.shifts.at(-1), [0, 24]);
   assert.ok(five.fits);
-  assert.ok(!page.placed(bar, [0, 0, 0], 11, 2, [100, 60], 50).fits, 'six rows are too deep');
-  assert.ok(!page.placed(bar, [0, 90, 0], 1, 2, [100, 60], 30).fits, 'upright it is too high');
-  assert.ok(page.placed(bar, [0, 90, 0], 1, 2, [100, 60], 40).fits);
+  assert.ok(!page.placed(bar, [0, 0, 0], 11, 2, room, 50).fits, 'six rows are too deep');
+  assert.ok(!page.placed(bar, [0, 90, 0], 1, 2, room, 30).fits, 'upright it is too high');
+  assert.ok(page.placed(bar, [0, 90, 0], 1, 2, room, 40).fits);
+});
+
+test('copies stand within an image that is turned, or off the middle of the platform', () => {
+  const cube = new Float32Array([0, 0, 0, 1, 1, 1]);
+  const fits = (copies, room) => page.placed(cube, [0, 0, 0], copies, 0, { image: [6.4, 4.8], offset: [0, 0], turn: 0, platform: [200, 200], ...room }, 50).fits;
+  assert.ok(fits(24, {}) && !fits(25, {}));
+  assert.ok(fits(24, { turn: 90 }) && !fits(25, { turn: 90 }));
+  assert.ok(fits(9, { turn: 45 }) && !fits(10, { turn: 45 }), 'three by three stand across the corners');
+  assert.ok(fits(12, { offset: [-1.2, 0.5] }) && !fits(13, { offset: [-1.2, 0.5] }));
+  assert.deepEqual(page.area({ image: [6.4, 4.8], offset: [0, 0], turn: 90, platform: [200, 200] }), [4.8, 6.4]);
 });
 
 test('the tab\'s title shows a print\'s progress, or a question mark if it is unknown', () => {

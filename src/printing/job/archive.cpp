@@ -116,4 +116,12 @@ Result<Image> Archive::image(const std::string& file) const {
     return decode_png(*png, size, state_->path + ": " + file);
 }
 
+bool is_job(const std::filesystem::path& path) {
+    constexpr std::uint64_t head_bytes = 4096;  // the format is the first key
+    const auto zip = ZipReader::open(path);
+    if (!zip || !zip->has("manifest.json")) return false;
+    const auto head = zip->read_head("manifest.json", head_bytes);
+    return head && head->find("\"format\"") != std::string::npos;
+}
+
 }  // namespace pliant::job

@@ -387,6 +387,8 @@ TEST_CASE("an exported job can be imported again, from zip files and from folder
     (void)export_job(archive, Format::vats, folder / "c");
     CHECK(is_image_stack(folder / "a/two_soft.sl1"));
     CHECK(!is_image_stack(folder / "two.zip"));
+    CHECK(is_job(folder / "two.zip"));
+    CHECK(!is_job(folder / "a/two_soft.sl1"));
     std::vector<MaterialStack> stacks;
     stacks.push_back({"soft", ImageStack::open(folder / "a/two_soft.sl1").value()});
     stacks.push_back({"rigid", ImageStack::open(folder / "c/vat_b").value()});

@@ -174,4 +174,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
+/// Whether a file is a job, valid or not: a zip file whose manifest.json states a format.
+[[nodiscard]] bool is_job(const std::filesystem::path& path);
+
 }  // namespace pliant::job

@@ -87,6 +87,10 @@ const Vat* Printer::vat_of_slot(int slot) const {
     return found == vats.end() ? nullptr : &*found;
 }
 
+double Printer::filled_ml(const Vat& vat) const {
+    return vat.resin.empty() && vat.fill_ml <= vat_shape.least_ml ? vat_shape.free_volume_ml : vat.fill_ml;
+}
+
 double Printer::cleaning_s(int from_vat, int to_vat) const {
     const CleaningPair* pair = find_pair(*this, from_vat, to_vat);
     return pair != nullptr ? pair->spray_s : cleaning.spray_s;

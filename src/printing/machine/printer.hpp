@@ -365,6 +365,8 @@ struct Printer {
     /// Precondition: there is such a vat.
     [[nodiscard]] int slot_of(int vat) const { return vats[static_cast<std::size_t>(vat)].slot; }
     [[nodiscard]] const Vat* vat_of_slot(int slot) const;  ///< nullptr if the slot has none
+    /// What is in a vat once it is filled: its fill, or, of an empty one that has none, all that it can hold.
+    [[nodiscard]] double filled_ml(const Vat& vat) const;
     /// Cleaning time between two vats (indices), and the planner's penalty for the pair.
     [[nodiscard]] double cleaning_s(int from_vat, int to_vat) const;
     [[nodiscard]] double penalty_s(int from_vat, int to_vat) const;

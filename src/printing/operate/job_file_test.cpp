@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <functional>
+
 #include "base/core/files.hpp"
 #include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
@@ -186,6 +188,28 @@ TEST_CASE("a job that lights pixels beside the platform is refused by the check 
     job.write();
     CHECK(holds(prove_job(job.path, Pixels::areas).error().message,
                 "halves.zip: layers/0_0.png: its light lies 0.306 mm beyond the platform at -x"));
+}
+
+TEST_CASE("a job does not pass for a printer whose image is mirrored, turned, placed or lit otherwise") {
+    Job job;
+    job.write();
+    const auto refused = [&](const std::function<void(machine::Projector&)>& change) {
+        machine::Printer other = job.printer;
+        other.name = "other";
+        change(other.projector);
+        const auto proved = prove_job(job.path, Pixels::fingerprints, &other);
+        return proved ? "" : proved.error().message;
+    };
+    CHECK(refused([](machine::Projector& p) { p.rotation_deg = 360; }).empty());
+    CHECK(holds(refused([](machine::Projector& p) { p.mirror_x = true; }),
+                "halves.zip: was sliced for another mirror_x of the projector; slice it again for other"));
+    CHECK(holds(refused([](machine::Projector& p) {
+                    p.mirror_y = true;
+                    p.rotation_deg = 180;
+                    p.offset_y_um = -10;
+                }),
+                "another mirror_y, rotation and offset of"));
+    CHECK(holds(refused([](machine::Projector& p) { p.grey = {0, 0.5, 1}; }), "another grey of"));
 }
 
 TEST_CASE("the host's limits come from the printer file, its programs from the planner") {

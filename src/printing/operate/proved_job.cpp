@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/core/text.hpp"
 #include "printing/job/verify.hpp"
 #include "printing/machine/image_room.hpp"
 #include "printing/operate/job_file.hpp"
@@ -45,7 +46,13 @@ Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels, co
     const bool sealed = !manifest.sha256.empty();
     if (Status status = check_fingerprints(open->archive, told); !status) return tl::unexpected(status.error());
     if (const auto mask = mask_of(open->archive, open->printer.projector); !mask) return tl::unexpected(mask.error());
-    if (other != nullptr) open->printer = *other;
+    if (other != nullptr) {
+        const std::vector<std::string> keys = machine::other_images(open->printer.projector, other->projector);
+        if (!keys.empty())
+            return input_error("{}: was sliced for another {} of the projector; slice it again for {}", where,
+                               join_names(keys), other->name);
+        open->printer = *other;
+    }
     Result<std::string> gcode = open->archive.file("job.gcode");
     if (!gcode) return tl::unexpected(gcode.error());
     Result<plan::Plan> plan = plan::make_plan(manifest, open->printer);

@@ -104,7 +104,7 @@ Error no_vat_holds(const std::string& resin, const std::vector<job::Material>& j
 }
 
 double usable_ml(const Printer& printer, int vat) {
-    return std::max(0.0, vat_at(printer, vat).fill_ml - printer.vat_shape.least_ml);
+    return std::max(0.0, printer.filled_ml(vat_at(printer, vat)) - printer.vat_shape.least_ml);
 }
 
 /// Tracks consumption from layer to layer, and which resin runs out when.
@@ -142,6 +142,7 @@ public:
     }
 
 private:
+    /// Pixels that two images expose count for both: which vat cures them depends on the order, which is not known yet.
     static double volume_ml(const job::Layer& layer, const job::LayerImage& image) {
         return image.area_mm2 * layer.thickness_um / 1e6;
     }
@@ -194,7 +195,6 @@ private:
                 use.materials.insert(std::upper_bound(use.materials.begin(), use.materials.end(), image.material),
                                      image.material);
             use.last_layer = index;
-            use.resin_ml += volume_ml(layer, image);
             int& first = assignment_.vat_of_material[static_cast<std::size_t>(image.material)];
             if (first < 0) first = vat;
         }

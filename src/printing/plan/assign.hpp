@@ -13,8 +13,8 @@
 namespace pliant::plan {
 
 struct Assignment {
-    std::vector<VatUse> vats;                    ///< without what they need and waste, which depends on their order
-    std::vector<int> vat_of_material;            ///< the first vat used; -1 for a material without images
+    std::vector<VatUse> vats;          ///< without what they give, need and waste, which depends on their order
+    std::vector<int> vat_of_material;  ///< the first vat used; -1 for a material without images
     std::vector<std::vector<int>> vat_of_image;  ///< for each layer, in the order of its images
     std::vector<RefillBefore> refills;           ///< by layer
     std::vector<std::string> warnings;

@@ -70,9 +70,7 @@ Status check_layers(const job::Manifest& job, const Printer& printer) {
             if (Status status = check_image(job, i, image); !status) return status;
         }
     }
-    if (below_um <= printer.platform.build_height_um) return {};
-    return input_error("{} is {:.2f} mm tall, {} builds {:.2f} mm", job.name, below_um / 1000.0, printer.name,
-                       printer.platform.build_height_um / 1000.0);
+    return check_height(job.name, below_um, printer.name, printer.platform.build_height_um);
 }
 
 Status check_job(const job::Manifest& job, const Printer& printer) {
@@ -122,7 +120,11 @@ ChangeCosts with_penalties(ChangeCosts costs, const Plan& plan, const Printer& p
 
 /// The printer with the resins that the plan fills in: cleaning depends on pairs of them.
 Printer with_resins(const Plan& plan, Printer printer) {
-    for (const VatUse& use : plan.vats) printer.vats[static_cast<std::size_t>(use.vat)].resin = use.resin;
+    for (const VatUse& use : plan.vats) {
+        machine::Vat& vat = printer.vats[static_cast<std::size_t>(use.vat)];
+        vat.fill_ml = printer.filled_ml(vat);
+        vat.resin = use.resin;
+    }
     return printer;
 }
 
@@ -180,24 +182,43 @@ CarriedOff larger(CarriedOff a, const CarriedOff& b) {
     return a;
 }
 
+/// The area that an image cures from its vat. A pixel that two images expose is cured in the vat that comes first. The
+/// manifest does not say with which image one shares its pixels: among more than two they count for the other one.
+double newly_cured_mm2(const Plan& plan, const job::Manifest& job, std::size_t layer, std::size_t k) {
+    const std::vector<job::LayerImage>& images = job.layers[layer].images;
+    const job::LayerImage& image = images[k];
+    double elsewhere_mm2 = image.shared_mm2;
+    if (images.size() == 2) {
+        const std::vector<int>& vats = plan.vat_of_image[layer];
+        const int other = vats[1 - k];
+        const bool first = vats[k] == other ? k == 0 : plan.order[layer].front() == vats[k];
+        elsewhere_mm2 = first ? 0 : image.shared_mm2 + images[1 - k].shared_mm2;
+    }
+    return std::max(0.0, image.area_mm2 - elsewhere_mm2);
+}
+
 /// What a layer prints from a vat.
 double taken_ml(const Plan& plan, const job::Manifest& job, std::size_t layer, int vat) {
     double ml = 0;
     for (std::size_t k = 0; k < job.layers[layer].images.size(); ++k) {
         if (plan.vat_of_image[layer][k] == vat)
-            ml += job.layers[layer].images[k].area_mm2 * job.layers[layer].thickness_um / 1e6;
+            ml += newly_cured_mm2(plan, job, layer, k) * job.layers[layer].thickness_um / 1e6;
     }
     return ml;
 }
 
-/// Of every vat up to its first refill. `carried`: what the part carries off in this plan.
+/// Of every vat, and what it needs up to its first refill. `carried`: what the part carries off in this plan.
 void reckon_needs(Plan& plan, const job::Manifest& job, const Printer& printer, const CarriedOff& carried) {
     for (VatUse& use : plan.vats) {
         const std::vector<int> refills = plan.refills_of(use.slot);
         const std::size_t end = refills.empty() ? job.layers.size() : static_cast<std::size_t>(refills.front());
         use.needed_ml = printer.vat_shape.least_ml;
-        for (std::size_t i = 0; i < end; ++i)
-            use.needed_ml += taken_ml(plan, job, i, use.vat) + carried[i][static_cast<std::size_t>(use.vat)];
+        use.resin_ml = 0;
+        for (std::size_t i = 0; i < job.layers.size(); ++i) {
+            const double printed_ml = taken_ml(plan, job, i, use.vat);
+            use.resin_ml += printed_ml;
+            if (i < end) use.needed_ml += printed_ml + carried[i][static_cast<std::size_t>(use.vat)];
+        }
     }
 }
 
@@ -205,7 +226,7 @@ void reckon_needs(Plan& plan, const job::Manifest& job, const Printer& printer, 
 Status check_fills(const Plan& plan, const job::Manifest& job, const Printer& printer) {
     for (std::size_t i = 0; i < job.layers.size(); ++i) {
         for (const VatUse& use : plan.vats) {
-            const double fill_ml = printer.vats[static_cast<std::size_t>(use.vat)].fill_ml;
+            const double fill_ml = printer.filled_ml(printer.vats[static_cast<std::size_t>(use.vat)]);
             const double gives_ml = std::max(0.0, fill_ml - printer.vat_shape.least_ml);
             const double needs_ml = taken_ml(plan, job, i, use.vat);
             if (needs_ml <= gives_ml + 1e-6 * (1 + gives_ml)) continue;
@@ -291,6 +312,12 @@ void warn_of_curves(const job::Manifest& job, const Printer& printer, Plan& plan
 }
 
 }  // namespace
+
+Status check_height(const std::string& job, int top_um, const std::string& printer, int build_height_um) {
+    if (top_um <= build_height_um) return {};
+    return input_error("{} is {:.2f} mm tall, {} builds {:.2f} mm", job, top_um / 1000.0, printer,
+                       build_height_um / 1000.0);
+}
 
 std::vector<int> Plan::refills_of(int slot) const {
     std::vector<int> found;

@@ -70,6 +70,9 @@ struct Plan {
     [[nodiscard]] std::vector<int> refills_of(int slot) const;
 };
 
+/// Errors: the top of the last layer is higher than the machine builds.
+[[nodiscard]] Status check_height(const std::string& job, int top_um, const std::string& printer, int build_height_um);
+
 /// Plans `job` for `printer`. Each resin uses the vat that holds it. A resin that no vat holds is an error or, if the
 /// job allows any vat (Manifest::any_vat), takes the next free one (empty ones first, then those whose resin the job
 /// does not need), with a warning. Further errors (input): a job for another projector, taller than the machine builds,

@@ -267,6 +267,39 @@ TEST_CASE("a layer that needs more than a full vat gives is an error of the plan
     CHECK(holds(plan_error(job, printer), "the vat of slot 1 gives 0.0 ml"));
 }
 
+TEST_CASE("an empty vat without a fill is filled with all that it can hold") {
+    machine::Printer printer = plan::test::tower();
+    printer.vats[3].resin = "";
+    printer.vats[3].fill_ml = 0;
+    const job::Manifest job = plan::test::make_job(repeated({0, 1}, 4), {"rubber", "semi-flex"});
+    const Plan plan = planned(job, printer);
+    CHECK(plan.vat_of_material == std::vector<int>{3, 0});
+    CHECK(plan.refills.empty());
+    CHECK(filled_printer(plan, job, printer).vats[3].fill_ml == printer.vat_shape.free_volume_ml);
+    printer.vats[3].fill_ml = 100;  // what the file says counts
+    CHECK(filled_printer(plan, job, printer).vats[3].fill_ml == 100);
+}
+
+TEST_CASE("resin of pixels that two images expose comes from the vat that is first in its layer") {
+    const machine::Printer printer = plan::test::tower();
+    job::Manifest job = plan::test::make_job(repeated({0, 1}, 2), two);
+    for (job::Layer& layer : job.layers) layer.images[0].shared_mm2 = 40;
+    Plan plan = planned(job, printer);
+    CHECK(plan.order[0] != plan.order[1]);  // 100 and 60 mm^2, then 60 and 100
+    CHECK(plan.vats[0].resin_ml == near(0.008, {.relative = 1e-12}));
+    CHECK(plan.vats[1].resin_ml == near(0.008, {.relative = 1e-12}));
+    job.layers.resize(1);
+    plan = planned(job, printer);
+    const auto first = static_cast<std::size_t>(plan.order[0].front());
+    CHECK(plan.vats[first].resin_ml == near(0.005, {.relative = 1e-12}));
+    CHECK(plan.vats[1 - first].resin_ml == near(0.003, {.relative = 1e-12}));
+    // Of three images none says whose pixels it shares; in all there is light on 260 mm^2.
+    job = plan::test::make_job({{0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
+    job.layers[0].images[1].shared_mm2 = 40;
+    plan = planned(job, printer);
+    CHECK(plan.vats[0].resin_ml + plan.vats[1].resin_ml + plan.vats[2].resin_ml == near(0.013, {.relative = 1e-12}));
+}
+
 TEST_CASE("what the part carries off counts in how long a vat lasts") {
     machine::Printer printer = plan::test::tower();
     job::Manifest job = plan::test::make_job(repeated({0}, 4), two);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <tuple>
 
 #include "base/core/counted.hpp"
+#include "printing/plan/plan.hpp"
 #include "printing/prepare/option_text.hpp"
 #include "printing/prepare/paint_file.hpp"
 #include "printing/prepare/settings.hpp"
@@ -60,8 +62,9 @@ Result<Vec3> shift_of(const Order& order) {
 
 /// Copies stand within the image, and on the platform.
 slice::Room room_of(const job::JobSettings& settings) {
-    if (!settings.edge || !settings.edge->limits()) return settings.slicing.raster;
-    return {settings.edge->width_um(), settings.edge->depth_um(), "the platform"};
+    slice::Room room = settings.slicing.raster;
+    if (settings.edge && settings.edge->limits()) room.limit(settings.edge->width_um(), settings.edge->depth_um());
+    return room;
 }
 
 /// How far a body's outlines are moved outwards.
@@ -86,6 +89,19 @@ Status check_edge(const job::JobSettings& settings, const Drawing& drawing) {
         if (!status) return status;
     }
     return {};
+}
+
+/// Hollowing and supports take long for a tall part, too. Rounded down: the slicer's own count has the last word.
+Status check_tall(const job::JobSettings& settings, const Drawing& drawing) {
+    if (settings.build_height_um <= 0) return {};
+    const Result<Box3> box = slice::bounds_of_all(drawing.bodies);
+    if (!box) return tl::unexpected(box.error());
+    if (box->empty() || box->high.z < settings.build_height_um) return {};
+    const slice::Layers layers = settings.slicing.layers();
+    constexpr double far_um = 1e9;  // beyond any machine, within what layers can count
+    const int count = layers.middles_up_to(static_cast<std::int64_t>(std::min(box->high.z, far_um)), 1);
+    if (count == 0) return {};
+    return plan::check_height(settings.name, layers.top_um(count - 1), settings.printer, settings.build_height_um);
 }
 
 Status place(const Order& order, const job::JobSettings& settings, Drawing& drawing) {
@@ -234,6 +250,7 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
     }
     if (Status status = check_edge(settings, drawing); !status) return status;
     if (Status status = set_heights(order, drawing, settings.slicing); !status) return status;
+    if (Status status = check_tall(settings, drawing); !status) return status;
     if (Status status = hollow_part(order, settings, drawing, notes, progress); !status) return status;
     if (!supported) return {};
     if (Status status = check_raft(order, wanted.raft_um, settings.slicing.layers()); !status) return status;

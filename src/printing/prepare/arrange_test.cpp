@@ -126,6 +126,22 @@ TEST_CASE("a part, its copies and its supports must stand on the platform, not o
     CHECK(arranged([](Order& o) { o.at = {5.25, 0}; }).status.has_value());
 }
 
+TEST_CASE("a part too tall for the machine is refused before it is hollowed or supported") {
+    machine::Printer low = printer();
+    low.name = "low";
+    const auto message = [&](int build_height_um, const std::function<void(Order&)>& change) {
+        low.platform.build_height_um = build_height_um;
+        const Arranged a = arranged(change, two_blocks(), low);
+        return a.status ? std::string() : a.status.error().message;
+    };
+    CHECK(message(3000, [](Order&) {}).empty());
+    CHECK(message(2960, [](Order&) {}) == "blocks is 3.00 mm tall, low builds 2.96 mm");
+    CHECK(message(3000, [](Order& o) {
+              o.support = "firm";
+              o.lift = "1 mm";
+          }) == "blocks is 4.00 mm tall, low builds 3.00 mm");
+}
+
 TEST_CASE("--support, --lift and --raft add supports") {
     const Arranged a = done([](Order& o) {
         o.support = "firm";

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <set>
+#include <map>
 
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
@@ -116,6 +116,11 @@ Status add_file(const std::string& input, Drawing& drawing) {
     const std::filesystem::path path = whole ? input : input.substr(equals + 1);
     if (drawing.name.empty()) drawing.name = path.stem().string();
     if (job::is_image_stack(path)) return add_stack(path, material, drawing);
+    if (job::is_job(path))
+        return input_error(
+            "{0}: is a job of Pliant, sliced already; `pliant export {0} --as zip -o FOLDER` writes its "
+            "images, one file for each material, which can be sliced",
+            path.string());
     Result<mesh::Geometry> geometry = mesh::open_geometry(path);
     if (!geometry) return tl::unexpected(geometry.error());
     if (auto* plate = std::get_if<threemf::ThreeMf>(&*geometry)) return add_3mf(std::move(*plate), material, drawing);
@@ -147,6 +152,7 @@ Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
         if (spec.exposure_s > 0) {
             name += " of " + spec.name;
             add_resin(drawing, name, material.resin);
+            drawing.made_of[name] = material.name;
             drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
         }
         if (const std::string colour = colour_text(material); !colour.empty())
@@ -188,7 +194,7 @@ Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::
 }
 
 Status set_resins(const std::vector<std::string>& choices, Drawing& drawing) {
-    std::set<std::string> given;
+    std::map<std::string, std::string> given;
     for (const std::string& choice : choices) {
         const std::size_t equals = choice.find('=');
         const std::string material = choice.substr(0, equals);
@@ -201,9 +207,14 @@ Status set_resins(const std::vector<std::string>& choices, Drawing& drawing) {
             for (const auto& pair : drawing.resin_of_material) names.push_back(pair.first);
             return input_error("--resin {}: there is no material \"{}\", only {}", choice, material, join_names(names));
         }
-        if (!given.insert(material).second)
+        if (!given.emplace(material, choice.substr(equals + 1)).second)
             return input_error("--resin {}: the resin of \"{}\" is given twice", choice, material);
-        found->second = choice.substr(equals + 1);
+    }
+    for (auto& [material, resin] : drawing.resin_of_material) {
+        auto choice = given.find(material);
+        const auto whole = drawing.made_of.find(material);
+        if (choice == given.end() && whole != drawing.made_of.end()) choice = given.find(whole->second);
+        if (choice != given.end()) resin = choice->second;
     }
     return {};
 }

@@ -25,6 +25,9 @@ struct Drawing {
     std::map<std::string, std::string> colour_of_material{};                ///< "#rrggbb", of those that have one
     std::vector<std::string> warnings;
     std::vector<std::string> notes{};  ///< overlaps of drawn bodies
+    /// Of materials that stand for a body with an exposure of its own: the material that the body is made of. What is
+    /// said of that one holds for these too, unless they are named themselves.
+    std::map<std::string, std::string> made_of{};
 };
 
 /// One robot file (.toml), with `assignments` as given by --set; or any number of
@@ -39,7 +42,7 @@ struct Drawing {
 /// The bodies of a robot. Errors: those of its geometry.
 [[nodiscard]] Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress);
 
-/// MATERIAL=RESIN: sets the resin of a material. Errors: no such material.
+/// MATERIAL=RESIN: sets the resin of a material, and of those made of it that are not named. Errors: no such material.
 [[nodiscard]] Status set_resins(const std::vector<std::string>& choices, Drawing& drawing);
 
 }  // namespace pliant::prepare

@@ -8,6 +8,7 @@
 #include "base/core/parallel.hpp"
 #include "base/core/text.hpp"
 #include "printing/job/image_volumes.hpp"
+#include "printing/plan/plan.hpp"
 #include "printing/prepare/finding_pictures.hpp"
 #include "printing/prepare/printed_together.hpp"
 #include "printing/prepare/thumbnail.hpp"
@@ -332,9 +333,31 @@ Manifest empty_manifest(const JobSettings& settings, std::vector<Material> mater
             std::move(materials),
             {},
             {},
-            !slicing.compensation.empty() || !slicing.bonds.empty() || slicing.removed,
+            !slicing.compensation.empty() || slicing.removed,
             {},
             settings.any_vat};
+}
+
+/// Teeth between materials whose images are put together cannot be seen in the part.
+void note_joint_teeth(const std::vector<slice::Teeth>& teeth, const slice::Summary& summary,
+                      std::span<const int> printed_as, Manifest& manifest) {
+    const auto printed = [&](const std::string& name) {
+        const auto at = std::find(summary.materials.begin(), summary.materials.end(), name);
+        return printed_as[static_cast<std::size_t>(at - summary.materials.begin())];
+    };
+    for (std::size_t i = 0; i < teeth.size(); ++i) {
+        if (!summary.interlocked[i] || printed(teeth[i].first) != printed(teeth[i].second)) continue;
+        manifest.warnings.push_back(
+            fmt::format("interlock: {} and {} are printed from one vat and exposed together, it changes nothing",
+                        teeth[i].first, teeth[i].second));
+    }
+}
+
+/// Before layers are made, which takes long for a tall part.
+Status check_top(const JobSettings& settings, int layer_count) {
+    if (settings.build_height_um <= 0 || layer_count == 0) return {};
+    return plan::check_height(settings.name, settings.slicing.layers().top_um(layer_count - 1), settings.printer,
+                              settings.build_height_um);
 }
 
 /// Handles finished layers, in order: passed to `note`, stored, listed in the manifest.
@@ -422,6 +445,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     if (!slicer) return tl::unexpected(slicer.error());
     const auto materials = used_materials(*slicer, settings.materials);
     if (!materials) return tl::unexpected(materials.error());
+    if (Status low = check_top(settings, slicer->layer_count()); !low) return tl::unexpected(low.error());
     PrintedTogether printed = printed_together(*materials, settings);
     MadeJob job{empty_manifest(settings, std::move(printed.materials)), {}};
     slice::Tally tally(*slicer);
@@ -441,6 +465,9 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     job.summary = tally.summary();
     measure(bodies, *slicer, job.summary, job.manifest.materials);
     job.manifest.warnings = job.summary.warnings;
+    const std::vector<bool>& overlapped = job.summary.overlapped;
+    if (std::find(overlapped.begin(), overlapped.end(), true) != overlapped.end()) job.manifest.compensated = true;
+    note_joint_teeth(settings.slicing.teeth, job.summary, source.printed_as, job.manifest);
     if (auto status = masked.note(job.manifest); !status) return tl::unexpected(status.error());
     if (auto status = keep_findings(inspector.finish(), joined(thin), source, settings, job.manifest, writer); !status)
         return tl::unexpected(status.error());
@@ -461,6 +488,7 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
         materials.push_back(*known);
         source.count = std::max(source.count, s.stack.layer_count());
     }
+    if (Status low = check_top(settings, source.count); !low) return tl::unexpected(low.error());
     source.layer = [&](int k) { return stacked_layer(stacks, k); };
     PrintedTogether printed = printed_together(materials, settings);
     source.printed_as = std::move(printed.printed_as);

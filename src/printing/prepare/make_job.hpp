@@ -39,6 +39,7 @@ struct JobSettings {
     LayerWatch watch{};                           ///< may be empty
     double most_exposure_s = longest_exposure_s;  ///< of any image
     std::string printer{};                        ///< whose limit that is
+    int build_height_um = 0;                      ///< of that printer; 0: not known
 };
 
 struct MadeJob {

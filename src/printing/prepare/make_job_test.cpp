@@ -54,6 +54,26 @@ TEST_CASE("a layer so thick that its exposure would be over the printer's limit 
     CHECK(made().empty());
 }
 
+TEST_CASE("a part too tall for the machine is refused before a layer is made") {
+    JobSettings settings = halves_settings();
+    settings.printer = "tower";
+    int layers = 0;
+    settings.watch = [&](const Manifest&, int, const std::vector<EncodedImage>&) { ++layers; };
+    const auto made = [&](int build_height_um) {
+        const pliant::test::Folder folder("job");
+        auto writer = Writer::create(folder / "job.zip");
+        REQUIRE(writer.has_value());
+        Progress progress;
+        settings.build_height_um = build_height_um;
+        const auto job = slice_to_job(halves, settings, *writer, progress);
+        return job ? std::string() : job.error().message;
+    };
+    CHECK(made(999) == "halves is 1.00 mm tall, tower builds 1.00 mm");
+    CHECK(layers == 0);
+    CHECK(made(1000).empty());
+    CHECK(layers == 20);
+}
+
 TEST_CASE("two materials become a job with the right layers, areas and volumes") {
     const pliant::test::Folder folder("job");
     const fs::path path = folder / "job.zip";
@@ -193,6 +213,44 @@ TEST_CASE("exposures of layers, layer heights, bonds and findings are written to
     CHECK(m.findings[0].area_mm2 == near(0.25, {.relative = 1e-12}));
     CHECK(archive->has_file(m.findings[0].picture));
     CHECK(verify_images(*archive, false, "job.zip").has_value());
+}
+
+TEST_CASE("a job is compensated by an overlap only where its materials meet") {
+    const auto made = [&](const std::vector<slice::Body>& bodies) {
+        const pliant::test::Folder folder("job");
+        auto writer = Writer::create(folder / "job.zip");
+        REQUIRE(writer.has_value());
+        JobSettings s = halves_settings();
+        s.slicing.bonds = {{"soft one", "soft/one", 2, 0}};
+        Progress progress;
+        auto job = slice_to_job(bodies, s, *writer, progress);
+        REQUIRE_MESSAGE(job.has_value(), (job ? "" : job.error().message));
+        return std::move(job->manifest);
+    };
+    CHECK(made({halves[0], halves[1]}).compensated);
+    const Manifest apart = made({{"soft one", box({-1000, -1000, 0}, {-500, 1000, 500}), ""},
+                                 {"soft/one", box({500, -1000, 0}, {1000, 1000, 500}), ""}});
+    CHECK(!apart.compensated);
+    CHECK(std::count(apart.warnings.begin(), apart.warnings.end(),
+                     "overlap: soft one and soft/one meet nowhere, no pixel is exposed twice") == 1);
+}
+
+TEST_CASE("an interlock of materials that are exposed together is told to change nothing") {
+    const pliant::test::Folder folder("job");
+    auto writer = Writer::create(folder / "job.zip");
+    REQUIRE(writer.has_value());
+    JobSettings s = halves_settings();
+    s.materials[1].resin = s.materials[0].resin;
+    s.materials[1].exposure_s = s.materials[0].exposure_s;
+    s.materials[1].bottom_exposure_s = s.materials[0].bottom_exposure_s;
+    s.slicing.teeth = {{"soft one", "soft/one", 2, 1}};
+    Progress progress;
+    const auto job = slice_to_job(halves, s, *writer, progress);
+    REQUIRE_MESSAGE(job.has_value(), (job ? "" : job.error().message));
+    const std::vector<std::string>& told = job->manifest.warnings;
+    CHECK(std::count(told.begin(), told.end(),
+                     "interlock: soft one and soft/one are printed from one vat and exposed together, it changes "
+                     "nothing") == 1);
 }
 
 TEST_CASE("what a black mask of the projector leaves dark is told for each material; a wholly dark job is an error") {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "base/core/letters.hpp"
@@ -92,6 +91,7 @@ std::map<std::string, job::ExposureRule> exposure_rules(const Drawing& drawing, 
 struct Pair {
     std::string first, second;
     int pixels = 0, layers = 0;
+    std::string named{};  ///< the pair that was given, as in "soft and firm"
 };
 
 /// FIRST+SECOND=PIXELS or FIRST+SECOND=PIXELS,LAYERS.
@@ -102,6 +102,7 @@ Result<Pair> read_pair(const char* option, const std::string& text, int default_
     const std::string numbers = text.substr(equals + 1);
     const std::size_t comma = std::min(numbers.find(','), numbers.size());
     Pair pair{text.substr(0, plus), text.substr(plus + 1, equals - plus - 1), 0, default_layers};
+    pair.named = pair.first + " and " + pair.second;
     pair.pixels = plain_number(numbers.substr(0, comma));
     if (comma < numbers.size()) pair.layers = plain_number(numbers.substr(comma + 1));
     if (pair.pixels < 0 || pair.layers < 0)
@@ -109,19 +110,59 @@ Result<Pair> read_pair(const char* option, const std::string& text, int default_
     return pair;
 }
 
+/// The materials of bodies that a pair means by a name: that one, and those made of it for exposures of their own.
+std::vector<std::string> meant_by(const std::string& name, const Order& order, const Drawing& drawing) {
+    const auto is_made_of = [&](const slice::Body& b) {
+        return b.material == name || (b.blend && b.blend->second == name);
+    };
+    std::vector<std::string> names;
+    for (const auto& [own, whole] : drawing.made_of) {
+        if (whole == name) names.push_back(own);
+    }
+    if (names.empty() || name == order.support || std::any_of(drawing.bodies.begin(), drawing.bodies.end(), is_made_of))
+        names.insert(names.begin(), name);
+    return names;
+}
+
+/// The pairs of an option, in order; a pair that is named itself is left as it is named.
+Result<std::vector<Pair>> pairs_of(const char* option, const std::vector<std::string>& texts, int default_layers,
+                                   const Order& order, const Drawing& drawing) {
+    std::vector<Pair> named, meant;
+    for (const std::string& text : texts) {
+        Result<Pair> pair = read_pair(option, text, default_layers);
+        if (!pair) return tl::unexpected(pair.error());
+        named.push_back(std::move(*pair));
+    }
+    const auto is_named = [&](const std::string& a, const std::string& b) {
+        return std::any_of(named.begin(), named.end(), [&](const Pair& p) {
+            return (p.first == a && p.second == b) || (p.first == b && p.second == a);
+        });
+    };
+    for (const Pair& pair : named) {
+        if (pair.first == pair.second) {
+            meant.push_back(pair);
+            continue;
+        }
+        for (const std::string& first : meant_by(pair.first, order, drawing)) {
+            for (const std::string& second : meant_by(pair.second, order, drawing)) {
+                const bool itself = first == pair.first && second == pair.second;
+                if (!itself && (first == second || is_named(first, second))) continue;
+                meant.push_back({first, second, pair.pixels, pair.layers, pair.named});
+            }
+        }
+    }
+    return meant;
+}
+
 Status set_pairs(const Order& order, const Drawing& drawing, slice::Settings& slicing) {
     if (!drawing.stacks.empty() && !(order.interlocks.empty() && order.overlaps.empty()))
         return input_error("--interlock, --overlap: layer images are printed as they are");
-    for (const std::string& text : order.interlocks) {
-        const Result<Pair> pair = read_pair("--interlock", text, 1);
-        if (!pair) return tl::unexpected(pair.error());
-        slicing.teeth.push_back({pair->first, pair->second, pair->pixels, pair->layers});
-    }
-    for (const std::string& text : order.overlaps) {
-        const Result<Pair> pair = read_pair("--overlap", text, 0);
-        if (!pair) return tl::unexpected(pair.error());
-        slicing.bonds.push_back({pair->first, pair->second, pair->pixels, pair->layers});
-    }
+    const auto interlocks = pairs_of("--interlock", order.interlocks, 1, order, drawing);
+    if (!interlocks) return tl::unexpected(interlocks.error());
+    for (const Pair& p : *interlocks) slicing.teeth.push_back({p.first, p.second, p.pixels, p.layers, p.named});
+    const auto overlaps = pairs_of("--overlap", order.overlaps, 0, order, drawing);
+    if (!overlaps) return tl::unexpected(overlaps.error());
+    for (const Pair& p : *overlaps) slicing.bonds.push_back({p.first, p.second, p.pixels, p.layers, p.named});
     return {};
 }
 
@@ -218,13 +259,15 @@ void apply(const ExposureChoice& choice, job::Material& material, job::JobSettin
     material.bottom_exposure_s = choice.bottom_s.value_or(std::max(material.bottom_exposure_s, choice.seconds));
 }
 
-/// `given`: the materials that have had one already.
+/// `given`: those before it.
 Status set_exposure(const std::string& text, const machine::Printer& printer, job::JobSettings& settings,
-                    std::set<std::string>& given, std::vector<std::string>& warnings) {
+                    std::vector<ExposureChoice>& given, std::vector<std::string>& warnings) {
     const Result<ExposureChoice> choice = read_exposure(text, settings.materials);
     if (!choice) return tl::unexpected(choice.error());
-    if (!choice->layers && !given.insert(choice->material).second)
+    const auto again = [&](const ExposureChoice& g) { return !g.layers && g.material == choice->material; };
+    if (!choice->layers && std::any_of(given.begin(), given.end(), again))
         return input_error("--exposure {}: the exposure of \"{}\" is given twice", text, choice->material);
+    given.push_back(*choice);
     const double most_s = std::max(choice->seconds, choice->bottom_s.value_or(0));
     if (most_s > printer.limits.exposure_s)
         return input_error("--exposure {}: {:g} s for \"{}\", the limit of {} is {:g} s", text, most_s,
@@ -240,6 +283,21 @@ Status set_exposure(const std::string& text, const machine::Printer& printer, jo
     if (choice->bottom_s)
         note_far_exposure(text, *choice->bottom_s, resin->bottom_exposure_s, printer, *resin, layer_um, warnings);
     return {};
+}
+
+/// Materials that stand for bodies with exposures of their own keep them, which the name of the whole material hides.
+void note_kept_exposures(const std::vector<ExposureChoice>& choices, const Drawing& drawing,
+                         std::vector<std::string>& warnings) {
+    const auto chosen = [&](const std::string& name) {
+        return std::ranges::find(choices, name, &ExposureChoice::material) != choices.end();
+    };
+    for (const auto& [own, whole] : drawing.made_of) {
+        if (!chosen(whole) || chosen(own)) continue;
+        warnings.push_back(
+            fmt::format("--exposure {}: \"{}\" keeps the exposure that the robot file gives its body; "
+                        "--exposure \"{}=TIME\" sets it",
+                        whole, own, own));
+    }
 }
 
 /// Reports a misspelt resin before anything is sliced; checks only materials in use.
@@ -456,6 +514,7 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     settings.copies = order.copies;
     settings.most_exposure_s = printer.limits.exposure_s;
     settings.printer = printer.name;
+    settings.build_height_um = printer.platform.build_height_um;
     settings.any_vat = order.any_vat;
     if (Status status = check_pixels(drawing, printer.projector); !status) return tl::unexpected(status.error());
     const Result<int> layer_um = layer_of(order, printer, drawing);
@@ -471,11 +530,12 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
             return tl::unexpected(status.error());
     }
     settings.exposures = exposure_rules(drawing, printer, !order.least_layer.empty());
-    std::set<std::string> given;
+    std::vector<ExposureChoice> given;
     for (const std::string& text : order.exposures) {
         if (Status status = set_exposure(text, printer, settings, given, drawing.warnings); !status)
             return tl::unexpected(status.error());
     }
+    note_kept_exposures(given, drawing, drawing.warnings);
     if (Status status = check_limits(drawing, settings.materials, printer); !status)
         return tl::unexpected(status.error());
     settings.slicing.compensation = compensations(drawing, printer);

@@ -362,6 +362,57 @@ TEST_CASE("--resin sets resin and exposures; one that no vat holds is an error u
     CHECK(!refused_settings([](Order& o) { o.resins = {"soft"}; }).empty());
 }
 
+TEST_CASE("what is said of a material holds for its bodies with exposures of their own, unless these are named") {
+    const auto drawn = [] {
+        Drawing d = two_blocks();
+        d.bodies.push_back({"soft of lid", box_um({18000, 0, 5000}, {19000, 4000, 8000}), "lid"});
+        d.resin_of_material.insert(d.resin_of_material.begin(), {"soft of lid", "soft"});
+        d.exposure_of_material["soft of lid"] = {7, 0};
+        d.made_of["soft of lid"] = "soft";
+        return d;
+    };
+    const auto settings = [&](Drawing& drawing, const Change& change) {
+        Order order;
+        change(order);
+        auto made = job_settings(order, printer(), {}, drawing);
+        REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
+        return std::move(*made);
+    };
+    Drawing drawing = drawn();
+    auto s = settings(drawing, [](Order& o) { o.resins = {"soft=firm"}; });
+    for (const job::Material& m : s.materials) CHECK(m.resin == "firm");
+    drawing = drawn();
+    s = settings(drawing, [](Order& o) { o.resins = {"soft=firm", "soft of lid=soft"}; });
+    CHECK(s.materials[0].resin == "soft");
+    CHECK(s.materials[1].resin == "firm");
+    drawing = drawn();
+    s = settings(drawing, [](Order& o) {
+        o.overlaps = {"soft+firm=2"};
+        o.interlocks = {"firm+soft=3,2", "firm+soft of lid=1", "soft+soft of lid=4"};
+    });
+    const auto pairs = [](const auto& all) {
+        std::vector<std::string> texts;
+        for (const auto& p : all) texts.push_back(fmt::format("{}+{}={},{}", p.first, p.second, p.depth_px, p.layers));
+        return texts;
+    };
+    CHECK(pairs(s.slicing.bonds) == std::vector<std::string>{"soft+firm=2,0", "soft of lid+firm=2,0"});
+    CHECK(pairs(s.slicing.teeth) ==
+          std::vector<std::string>{"firm+soft=3,2", "firm+soft of lid=1,1", "soft+soft of lid=4,1"});
+    // Its own exposure is said of the body: the material's leaves it, and the warning says so.
+    drawing = drawn();
+    s = settings(drawing, [](Order& o) { o.exposures = {"soft=3 s"}; });
+    CHECK(s.materials[0].exposure_s == 7);
+    CHECK(s.materials[1].exposure_s == 3);
+    REQUIRE(drawing.warnings.size() == 1);
+    CHECK(drawing.warnings[0] ==
+          "--exposure soft: \"soft of lid\" keeps the exposure that the robot file gives its body; "
+          "--exposure \"soft of lid=TIME\" sets it");
+    drawing = drawn();
+    s = settings(drawing, [](Order& o) { o.exposures = {"soft=3 s", "soft of lid=4 s"}; });
+    CHECK(s.materials[0].exposure_s == 4);
+    CHECK(drawing.warnings.empty());
+}
+
 TEST_CASE("the resins' settings in the printer file reach their materials") {
     machine::Printer p = printer();
     p.resins[1].xy_compensation_um = -40;

@@ -24,12 +24,72 @@ void turn_pair(double& a, double& b, double degrees) {
 
 constexpr int most_copies = 10000;
 
-/// Number of copies that fit in a row; unlimited for a part without extent.
-int fitting(double room, double size, double spacing) {
-    return static_cast<int>(std::clamp(std::floor((room + spacing + 1) / (size + spacing)), 0.0, 1.0 * most_copies));
+double row_um(int count, double size, double spacing) {
+    return count * size + (count - 1) * spacing;
+}
+
+/// Columns and rows of copies.
+struct Grid {
+    int columns = 0, rows = 0;
+    [[nodiscard]] long long places() const { return static_cast<long long>(columns) * rows; }
+};
+
+/// The most columns that fit in so many rows; unlimited for a part without extent.
+int fitting(const Room& room, const Vec3& size, double spacing, int rows) {
+    int low = 0, high = most_copies;
+    while (low < high) {
+        const int columns = (low + high + 1) / 2;
+        if (room.holds(row_um(columns, size.x, spacing), row_um(rows, size.y, spacing)))
+            low = columns;
+        else
+            high = columns - 1;
+    }
+    return low;
+}
+
+/// The grid of the fewest rows with that many places; the one with the most if there are not so many.
+Grid grid_of(const Room& room, const Vec3& size, double spacing, int count) {
+    Grid most;
+    for (int rows = 1; rows <= most_copies && most.places() < count; ++rows) {
+        const Grid grid{fitting(room, size, spacing, rows), rows};
+        if (grid.columns == 0) break;
+        if (grid.places() > most.places()) most = grid;
+    }
+    return most;
 }
 
 }  // namespace
+
+Room::Room(const Raster& raster)
+    : width_um_(0),
+      depth_um_(0),
+      column_um_(std::max(0.0, raster.width_um() - 2 * std::fabs(raster.offset_x_um))),
+      row_um_(std::max(0.0, raster.height_um() - 2 * std::fabs(raster.offset_y_um))),
+      cosine_(turn_of(raster)[0]),
+      sine_(turn_of(raster)[1]),
+      off_centre_(raster.offset_x_um != 0 || raster.offset_y_um != 0) {
+    width_um_ = cosine_ * column_um_ + sine_ * row_um_;
+    depth_um_ = sine_ * column_um_ + cosine_ * row_um_;
+}
+
+void Room::limit(double width_um, double depth_um) {
+    on_platform_ = width_um < width_um_ || depth_um < depth_um_;
+    width_um_ = std::min(width_um_, width_um);
+    depth_um_ = std::min(depth_um_, depth_um);
+}
+
+std::string Room::name() const {
+    if (!off_centre_) return on_platform_ ? "the platform" : "an image";
+    return on_platform_ ? "the platform under an image that is not in its middle"
+                        : "an image around the middle of the platform";
+}
+
+bool Room::holds(double x_um, double y_um) const {
+    constexpr double rounding_um = 1;
+    return x_um <= width_um_ + rounding_um && y_um <= depth_um_ + rounding_um &&
+           cosine_ * x_um + sine_ * y_um <= column_um_ + rounding_um &&
+           sine_ * x_um + cosine_ * y_um <= row_um_ + rounding_um;
+}
 
 Status scale(std::vector<Body>& bodies, double factor) {
     constexpr double least = 0.01, most = 100;
@@ -90,13 +150,13 @@ Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Roo
     if (!box) return tl::unexpected(box.error());
     if (box->empty()) return {};
     const Vec3 size = box->size();
-    const int columns = std::min(count, fitting(room.width_um, size.x, spacing_um));
-    const int rows = fitting(room.depth_um, size.y, spacing_um);
-    if (static_cast<long long>(columns) * rows < count)
+    const Grid grid = grid_of(room, size, spacing_um, count);
+    if (grid.places() < count)
         return input_error(
             "{} copies of {:.3f} x {:.3f} mm, {:.3f} mm apart, do not fit {} of {:.3f} x {:.3f} mm: {} do", count,
-            size.x / 1000, size.y / 1000, spacing_um / 1000, room.name, room.width_um / 1000, room.depth_um / 1000,
-            static_cast<long long>(fitting(room.width_um, size.x, spacing_um)) * rows);
+            size.x / 1000, size.y / 1000, spacing_um / 1000, room.name(), room.width_um() / 1000,
+            room.depth_um() / 1000, grid.places());
+    const int columns = std::min(count, grid.columns);
     const std::vector<Body> part = bodies;
     for (int n = 1; n < count; ++n) {
         const int column = n % columns, row = n / columns;

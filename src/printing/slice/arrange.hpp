@@ -16,19 +16,30 @@ namespace pliant::slice {
 /// exact. Errors: a body of slices rotated about an axis other than z.
 [[nodiscard]] Status turn(std::vector<Body>& bodies, const Vec3& degrees);
 
-/// Where copies may stand.
-struct Room {
-    double width_um = 0, depth_um = 0;
-    const char* name = "an image";
+/// Where copies may stand: around the middle of the platform, within the image, which may be turned or not in its
+/// middle.
+class Room {
+public:
+    Room(const Raster& raster);  // NOLINT: implicit on purpose, an image is a room
+    /// Nor may they stand beside a platform of this size.
+    void limit(double width_um, double depth_um);
 
-    Room(const Raster& raster) : Room(image_extent(raster)) {}
-    Room(double width, double depth, const char* what) : width_um(width), depth_um(depth), name(what) {}
+    /// Of the room; if the image is turned by no quarter turn, of its bounding box.
+    [[nodiscard]] double width_um() const { return width_um_; }
+    [[nodiscard]] double depth_um() const { return depth_um_; }
+    /// "an image", "the platform".
+    [[nodiscard]] std::string name() const;
+    /// Whether copies of this size all together have room.
+    [[nodiscard]] bool holds(double x_um, double y_um) const;
 
 private:
-    explicit Room(const ImageExtent& image) : width_um(image.x_um), depth_um(image.y_um) {}
+    double width_um_, depth_um_;
+    double column_um_, row_um_;  ///< along the image's rows and columns
+    double cosine_, sine_;       ///< of its rotation, without signs
+    bool off_centre_, on_platform_ = false;
 };
 
-/// Repeats the part `count` times in a grid of as few rows as the room's width allows, `spacing_um` apart; place the
+/// Repeats the part `count` times in a grid of as few rows as the room allows, `spacing_um` apart; place the
 /// result with place_on_platform(). Names of copies end in " #2", " #3" and so on. Errors, with numbers: fewer than 1
 /// or more than 10000 copies, a negative spacing, or more copies than there is room for.
 [[nodiscard]] Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Room& room);

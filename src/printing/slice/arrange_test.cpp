@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "printing/slice/place.hpp"
+#include "printing/slice/slicer.hpp"
 #include "printing/slice/test_shapes.hpp"
 
 using namespace pliant;
@@ -43,6 +45,34 @@ TEST_CASE("copies stand in the room that a turned image covers") {
     bodies.resize(1);
     CHECK(repeat(bodies, 7, 0, raster).error().message ==
           "7 copies of 4.800 x 1.000 mm, 0.000 mm apart, do not fit an image of 4.800 x 6.400 mm: 6 do");
+}
+
+TEST_CASE("the number of copies in an image that is turned or off the platform's middle can be attained") {
+    Raster raster{64, 48, 100};
+    const std::vector<Body> one{{"soft", box({0, 0, 0}, {1000, 1000, 100}), "a"}};
+    const auto refused = [&](int count) {
+        std::vector<Body> bodies = one;
+        const Status made = repeat(bodies, count, 0, raster);
+        return made ? std::string() : made.error().message;
+    };
+    raster.rotation_deg = 45;
+    // A grid of n x m fits where (n + m) / sqrt(2) is at most 4.8: three by three.
+    CHECK(refused(10) ==
+          "10 copies of 1.000 x 1.000 mm, 0.000 mm apart, do not fit an image of 7.920 x 7.920 mm: 9 do");
+    std::vector<Body> bodies = one;
+    REQUIRE(repeat(bodies, 9, 0, raster).has_value());
+    REQUIRE(place_on_platform(bodies, raster).has_value());
+    CHECK(Slicer::prepare(bodies, {raster, 50, {}}).has_value());
+    raster.rotation_deg = 0;
+    raster.offset_x_um = -1200;
+    raster.offset_y_um = 500;
+    CHECK(refused(13) ==
+          "13 copies of 1.000 x 1.000 mm, 0.000 mm apart, do not fit an image around the middle of the platform of "
+          "4.000 x 3.800 mm: 12 do");
+    bodies = one;
+    REQUIRE(repeat(bodies, 12, 0, raster).has_value());
+    REQUIRE(place_on_platform(bodies, raster).has_value());
+    CHECK(Slicer::prepare(bodies, {raster, 50, {}}).has_value());
 }
 
 TEST_CASE("copies are arranged in rows; too many are refused with the number that fits") {

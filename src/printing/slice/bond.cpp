@@ -31,10 +31,10 @@ Status check(const Bond& bond) {
     return {};
 }
 
-void add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const ComposedLayer> around, int first,
+bool add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const ComposedLayer> around, int first,
               int second, int depth_px) {
     const MaterialImage* found = find(owned, second);
-    if (found == nullptr) return;
+    if (found == nullptr) return false;
     const RunImage& into = found->image;
     RunSet near(into.width_px(), into.height_px());
     if (const MaterialImage* own = find(owned, first)) near = grown(RunSet::lit(own->image), depth_px);
@@ -42,7 +42,7 @@ void add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const 
         if (const MaterialImage* other = find(neighbour, first)) near = united(near, RunSet::lit(other->image));
     }
     RunImage added = inside(into, near);
-    if (added.blank()) return;
+    if (added.blank()) return false;
     MaterialImage& image = of_material(layer, first, into);
     // Without what another bond has added already.
     added = outside(added, RunSet::lit(image.image));
@@ -50,6 +50,7 @@ void add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const 
     image.image = together(image.image, added);
     image.value_sum += sum;
     image.shared_sum += sum;
+    return true;
 }
 
 }  // namespace pliant::slice

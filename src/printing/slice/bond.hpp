@@ -14,6 +14,7 @@ struct Bond {
     std::string first, second;  ///< materials
     int depth_px = 0;
     int layers = 0;
+    std::string named{};  ///< the pair that it belongs to, in messages; empty: its own materials
 };
 
 /// Errors: a material with itself, a depth outside 0 to 1000 pixels, layers outside 0 to 1000, and both 0.
@@ -21,8 +22,8 @@ struct Bond {
 
 /// Adds the exposure of one bond (materials of the layer's images), from the pixels that each owns. `around`: the same
 /// layer and its neighbours up to Bond::layers, before any bond. The added area is counted in
-/// MaterialImage::shared_sum.
-void add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const ComposedLayer> around, int first,
+/// MaterialImage::shared_sum. Returns whether the two meet here, so that something is exposed twice.
+bool add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const ComposedLayer> around, int first,
               int second, int depth_px);
 
 }  // namespace pliant::slice

@@ -66,6 +66,33 @@ TEST_CASE("a bond over layers lights the area of contact just above and below") 
     CHECK(!Slicer::prepare(stacked, with_bond({"soft", "firm", 0, 0})).has_value());
 }
 
+TEST_CASE("pairs that meet nowhere are told of, once for all that stand for one option") {
+    // From left to right "soft", "soft of q", "firm" and, further away, "hard".
+    const std::vector<Body> row{{"soft", box({-2000, -500, 0}, {-1000, 500, 100}), ""},
+                                {"soft of q", box({-1000, -500, 0}, {0, 500, 100}), ""},
+                                {"firm", box({0, -500, 0}, {1000, 500, 100}), ""},
+                                {"hard", box({1500, -500, 0}, {2000, 500, 100}), ""}};
+    const auto told = [&](const std::vector<Bond>& bonds, const std::vector<Teeth>& teeth) {
+        Settings settings{small_raster, 50, {}};
+        settings.bonds = bonds;
+        settings.teeth = teeth;
+        Progress silent;
+        const auto summary = slice_bodies(
+            row, settings, [](int, int, const RunImage&) { return Status{}; }, silent);
+        REQUIRE(summary.has_value());
+        return summary->warnings;
+    };
+    CHECK(told({{"soft of q", "firm", 3, 0}}, {{"firm", "soft of q", 2, 1}}).empty());
+    CHECK(told({{"soft", "firm", 3, 0}}, {}) ==
+          std::vector<std::string>{"overlap: soft and firm meet nowhere, no pixel is exposed twice"});
+    CHECK(told({}, {{"firm", "hard", 3, 1}}) ==
+          std::vector<std::string>{"interlock: firm and hard meet nowhere, no pixel changes sides"});
+    const std::string named = "soft and firm";
+    CHECK(told({{"soft", "firm", 3, 0, named}, {"soft of q", "firm", 3, 0, named}}, {}).empty());
+    CHECK(told({{"soft", "hard", 3, 0, "soft and hard"}, {"soft of q", "hard", 3, 0, "soft and hard"}}, {}).size() ==
+          1);
+}
+
 TEST_CASE("bleed compensation removes the lowest layers above an underside, and nothing else") {
     // A table: two legs and a plate from 200 to 500 um.
     const std::vector<Body> table{{"soft", box({-2000, -500, 0}, {-1000, 500, 500}), ""},

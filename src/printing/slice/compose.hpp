@@ -38,6 +38,8 @@ struct ComposedLayer {
                                        ///< body itself
     std::vector<DealtBody> dealt{};    ///< of bodies that have a blend
     std::vector<double> air_px{};      ///< (bodies, or empty) area that was cut out of each
+    std::vector<bool> interlocked{};   ///< (interlocks, or empty) whether each changed a pixel
+    std::vector<bool> overlapped{};    ///< (overlaps, or empty) whether each has a pixel exposed twice
 };
 
 /// The non-blank ones of the images (one per material).

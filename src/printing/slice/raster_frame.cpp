@@ -33,9 +33,13 @@ RasterFrame::RasterFrame(const Raster& raster, double um_per_unit) {
     mirrored_ = raster.mirror_x != raster.mirror_y;
 }
 
-ImageExtent image_extent(const Raster& raster) {
+std::array<double, 2> turn_of(const Raster& raster) {
     const Turn turn = turn_by(raster.rotation_deg);
-    const double c = std::fabs(turn.cosine), s = std::fabs(turn.sine);
+    return {std::fabs(turn.cosine), std::fabs(turn.sine)};
+}
+
+ImageExtent image_extent(const Raster& raster) {
+    const auto [c, s] = turn_of(raster);
     return {c * raster.width_um() + s * raster.height_um(), s * raster.width_um() + c * raster.height_um()};
 }
 

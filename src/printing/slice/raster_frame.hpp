@@ -36,4 +36,7 @@ struct ImageExtent {
 };
 [[nodiscard]] ImageExtent image_extent(const Raster& raster);
 
+/// |cos| and |sin| of the image's rotation; exact for quarter turns.
+[[nodiscard]] std::array<double, 2> turn_of(const Raster& raster);
+
 }  // namespace pliant::slice

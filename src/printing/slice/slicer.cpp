@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "base/core/parallel.hpp"
@@ -318,7 +320,7 @@ ComposedLayer Slicer::owned(int k, Foot foot) const {
     for (const Teeth& teeth : settings_.teeth) {
         int taker = material(teeth.first), giver = material(teeth.second);
         if (k / teeth.layers % 2 == 1) std::swap(taker, giver);
-        take_teeth(layer, taker, giver, teeth.depth_px);
+        layer.interlocked.push_back(take_teeth(layer, taker, giver, teeth.depth_px));
     }
     return layer;
 }
@@ -365,7 +367,8 @@ SlicedLayer Slicer::layer(int k) const {
             if (!known.contains(j)) known[j] = bled(j);
             around.push_back(known[j]);
         }
-        add_bond(layer, owned, around, material(bond.first), material(bond.second), bond.depth_px);
+        layer.overlapped.push_back(
+            add_bond(layer, owned, around, material(bond.first), material(bond.second), bond.depth_px));
     }
     return layer;
 }
@@ -397,13 +400,39 @@ Status Slicer::check_pairs() const {
     return {};
 }
 
+namespace {
+
+void add_met(const std::vector<bool>& layer, std::vector<bool>& met) {
+    for (std::size_t i = 0; i < layer.size(); ++i) met[i] = met[i] || layer[i];
+}
+
+/// The pairs of which no part changed a pixel, as in "soft and firm"; an option may stand for several parts.
+template <class Pairs>
+std::vector<std::string> meeting_nowhere(const Pairs& pairs, const std::vector<bool>& met) {
+    std::map<std::tuple<std::string, int, int>, bool> whole;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const std::string named = pairs[i].named.empty() ? pairs[i].first + " and " + pairs[i].second : pairs[i].named;
+        bool& any = whole[{named, pairs[i].depth_px, pairs[i].layers}];
+        any = any || met[i];
+    }
+    std::vector<std::string> names;
+    for (const auto& [key, any] : whole) {
+        if (!any) names.push_back(std::get<0>(key));
+    }
+    return names;
+}
+
+}  // namespace
+
 Tally::Tally(const Slicer& slicer)
     : slicer_(slicer),
       lost_mm3_(slicer.body_labels().size(), 0.0),
       doubled_mm3_(lost_mm3_),
       air_mm3_(lost_mm3_),
       first_mm3_(lost_mm3_),
-      second_mm3_(lost_mm3_) {}
+      second_mm3_(lost_mm3_),
+      interlocked_(slicer.settings().teeth.size()),
+      overlapped_(slicer.settings().bonds.size()) {}
 
 void Tally::add(int k, const SlicedLayer& layer) {
     const double pixel_um = slicer_.settings().raster.pixel_um;
@@ -417,6 +446,8 @@ void Tally::add(int k, const SlicedLayer& layer) {
         first_mm3_[static_cast<std::size_t>(d.body)] += d.first_px * voxel_mm3;
         second_mm3_[static_cast<std::size_t>(d.body)] += d.second_px * voxel_mm3;
     }
+    add_met(layer.interlocked, interlocked_);
+    add_met(layer.overlapped, overlapped_);
     closed_gap_pixels_ += layer.closed_gap_pixels;
     if (layer.images.empty()) {
         if (pending_empty_++ == 0 && empty_between_ == 0) first_empty_ = k;
@@ -446,6 +477,12 @@ Summary Tally::summary() const {
             fmt::format("{}: {:.4g} mm^3 overlap with later bodies of other materials, which keep them",
                         slicer_.body_labels()[b], lost_mm3));
     }
+    summary.interlocked = interlocked_;
+    summary.overlapped = overlapped_;
+    for (const std::string& names : meeting_nowhere(settings.teeth, interlocked_))
+        summary.warnings.push_back(fmt::format("interlock: {} meet nowhere, no pixel changes sides", names));
+    for (const std::string& names : meeting_nowhere(settings.bonds, overlapped_))
+        summary.warnings.push_back(fmt::format("overlap: {} meet nowhere, no pixel is exposed twice", names));
     if (closed_gap_pixels_ > 0)
         summary.warnings.push_back(fmt::format("gaps of at most {:.6g} um between materials closed in {} pixels",
                                                settings.rules.close_gap_um, closed_gap_pixels_));

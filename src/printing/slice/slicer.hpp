@@ -135,6 +135,8 @@ struct Summary {
     std::vector<double> doubled_mm3{};   ///< per body: volume also filled by a later one of the same material, or by
                                          ///< itself again
     std::vector<double> air_mm3{};       ///< per body: volume that was cut out of it
+    std::vector<bool> interlocked{};     ///< per interlock: whether it changed a pixel
+    std::vector<bool> overlapped{};      ///< per overlap: whether a pixel is exposed twice for it
 };
 
 /// Collects the remarks of all layers, which are added in order.
@@ -147,6 +149,7 @@ public:
 private:
     const Slicer& slicer_;
     std::vector<double> lost_mm3_, doubled_mm3_, air_mm3_, first_mm3_, second_mm3_;  ///< per body
+    std::vector<bool> interlocked_, overlapped_;                                     ///< per pair of the settings
     std::int64_t closed_gap_pixels_ = 0;
     int first_filled_ = -1, last_filled_ = -1, empty_between_ = 0, first_empty_ = -1, pending_empty_ = 0;
 };

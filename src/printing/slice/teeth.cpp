@@ -17,16 +17,17 @@ Status check(const Teeth& teeth) {
     return {};
 }
 
-void take_teeth(ComposedLayer& layer, int taker, int giver, int depth_px) {
+bool take_teeth(ComposedLayer& layer, int taker, int giver, int depth_px) {
     MaterialImage *to = find(layer, taker), *from = find(layer, giver);
-    if (to == nullptr || from == nullptr) return;
+    if (to == nullptr || from == nullptr) return false;
     const RunSet taken = common(grown(RunSet::lit(to->image), depth_px), RunSet::lit(from->image));
-    if (taken.empty()) return;
+    if (taken.empty()) return false;
     to->image = together(to->image, inside(from->image, taken));
     from->image = outside(from->image, taken);
     to->value_sum = to->image.value_sum();
     from->value_sum = from->image.value_sum();
     std::erase_if(layer.images, [](const MaterialImage& m) { return m.image.blank(); });
+    return true;
 }
 
 }  // namespace pliant::slice

@@ -14,12 +14,14 @@ struct Teeth {
     std::string first, second;  ///< materials
     int depth_px = 0;
     int layers = 1;
+    std::string named{};  ///< the pair that it belongs to, in messages; empty: its own materials
 };
 
 /// Errors: a material with itself, a depth outside 1 to 1000 pixels, layers outside 1 to 10000.
 [[nodiscard]] Status check(const Teeth& teeth);
 
-/// Moves to `taker` what is within `depth_px` of it in `giver` (materials of the layer's images).
-void take_teeth(ComposedLayer& layer, int taker, int giver, int depth_px);
+/// Moves to `taker` what is within `depth_px` of it in `giver` (materials of the layer's images). Returns whether there
+/// is anything.
+bool take_teeth(ComposedLayer& layer, int taker, int giver, int depth_px);
 
 }  // namespace pliant::slice

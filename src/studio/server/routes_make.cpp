@@ -205,6 +205,8 @@ Response printer(Studio& studio, const Request& request) {
          {"mask", p.projector.mask},
          {"image_mm",
           {p.projector.width_px * p.projector.pixel_um / 1e3, p.projector.height_px * p.projector.pixel_um / 1e3}},
+         {"image_offset_mm", {p.projector.offset_x_um / 1e3, p.projector.offset_y_um / 1e3}},
+         {"image_turn_deg", p.projector.rotation_deg},
          {"platform",
           {{"width_mm", p.platform.width_um / 1e3},
            {"depth_mm", p.platform.depth_um / 1e3},

@@ -12,9 +12,9 @@ import { theme } from '../theme';
 import type { Scene } from '../types';
 import { AxesCorner, turnAxes } from './axes_corner';
 import { estimate } from './estimate';
-import { area, copies, fields, printer, printerInfo, scale, shift, support, turn, type PrinterInfo } from './order';
+import { copies, fields, printer, printerInfo, roomOf, scale, shift, support, turn, type PrinterInfo } from './order';
 import { painted, paintTable, readPaint, refined, strokes, touches, wishColours, type Touch, type Wish } from './paint';
-import { layOnFace, placed, rotationOf, type Degrees } from './place';
+import { area, layOnFace, placed, rotationOf, type Degrees } from './place';
 import { clock } from './plan';
 import { disposePlatform, platformMesh } from './platform';
 
@@ -146,7 +146,7 @@ class BedView {
   }
 
   show(where: ReturnType<typeof placed>, degrees: Degrees, size: number, at: [number, number], p: PrinterInfo) {
-    this.stand(...area(p));
+    this.stand(...area(roomOf(p)));
     this.parts.clear();
     const turned = rotationOf(degrees);
     for (const [x, y] of where.shifts.slice(0, 200)) {
@@ -164,10 +164,10 @@ class BedView {
       this.down = down;
       this.colour();
     }
-    const key = JSON.stringify([where.size, area(p)]);
+    const key = JSON.stringify([where.size, area(roomOf(p))]);
     if (key !== this.seen) {
       this.seen = key;
-      this.size = Math.max(Math.hypot(...where.size), 0.5 * Math.hypot(...area(p)));
+      this.size = Math.max(Math.hypot(...where.size), 0.5 * Math.hypot(...area(roomOf(p))));
       this.height = where.size[2];
       this.home();
     }
@@ -423,7 +423,7 @@ export function Bed() {
   const p = printerInfo.value;
   const spacing = millimetres(fields.value.spacing, 2);
   const count = Math.max(1, Math.min(1000, Math.round(copies.value) || 1));
-  const where = s && p ? placed(s.f32('rest'), turn.value, count, spacing, area(p), p.platform.height_mm, scale.value, shift.value) : null;
+  const where = s && p ? placed(s.f32('rest'), turn.value, count, spacing, roomOf(p), p.platform.height_mm, scale.value, shift.value) : null;
   const materials = s?.head.materials.map((m) => m.name) ?? [];
   const e = estimate.value;
   const angle = Number(fields.value['support-angle'] || 45);
@@ -515,8 +515,8 @@ export function Bed() {
       {where && (
         <div class="layer-info">
           <b>{where.size.map((v) => v.toFixed(1)).join(' × ')} mm</b>
-          {where.fits && <span class="quiet">on {area(p!).map((v) => +v.toFixed(1)).join(' × ')} mm, grid of 10 mm</span>}
-          {!where.fits && <span class="problems-inline" role="alert">does not fit {area(p!).map((v) => v.toFixed(1)).join(' × ')} × {p!.platform.height_mm.toFixed(0)} mm{shift.value.some((v) => v !== 0) && ' there'}</span>}
+          {where.fits && <span class="quiet">on {area(roomOf(p!)).map((v) => +v.toFixed(1)).join(' × ')} mm, grid of 10 mm</span>}
+          {!where.fits && <span class="problems-inline" role="alert">does not fit {area(roomOf(p!)).map((v) => v.toFixed(1)).join(' × ')} × {p!.platform.height_mm.toFixed(0)} mm{shift.value.some((v) => v !== 0) && ' there'}</span>}
         </div>
       )}
     </div>

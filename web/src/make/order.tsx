@@ -9,6 +9,7 @@ import { api, documentState, mayDrive, onEvent, post, say, scene, sliceError, sl
 import { keyOf } from '../simulate/toml_edit';
 import { orderProblem, useEstimate } from './estimate';
 import { paintTable, readPaint, strokes, touches } from './paint';
+import type { Room } from './place';
 
 export interface PrinterInfo {
   name: string;
@@ -16,13 +17,14 @@ export interface PrinterInfo {
   pixel_um: number;
   mask: string;
   image_mm: [number, number];
+  image_offset_mm: [number, number];
+  image_turn_deg: number;
   platform: { width_mm: number; depth_mm: number; height_mm: number };
   resins: { name: string; exposure_s: number; bottom_exposure_s: number }[];
   vats: { slot: number; resin: string }[];
 }
 
-/// What can be printed on: the part of the platform that the image reaches, mm.
-export const area = (p: PrinterInfo): [number, number] => [Math.min(p.image_mm[0], p.platform.width_mm), Math.min(p.image_mm[1], p.platform.depth_mm)];
+export const roomOf = (p: PrinterInfo): Room => ({ image: p.image_mm, offset: p.image_offset_mm, turn: p.image_turn_deg, platform: [p.platform.width_mm, p.platform.depth_mm] });
 
 interface Bond {
   kind: 'overlap' | 'interlock';

@@ -37,19 +37,63 @@ export interface Placed {
   fits: boolean;
 }
 
-/// The grid of copies in as few rows as the width of what can be printed on allows, as placed by `pliant slice --copies`.
-export function placed(points: Float32Array, turn: Degrees, copies: number, spacing: number, [width, depth]: [number, number], height: number, scale = 1, at: [number, number] = [0, 0]): Placed {
+/// What can be printed on: the image, turned and off the platform's middle as the printer file says, on the platform; mm.
+export interface Room {
+  image: [number, number];
+  offset: [number, number];
+  turn: number; // degrees
+  platform: [number, number];
+}
+
+function cosineAndSine(degrees: number): [number, number] {
+  const exact = degrees % 90 === 0;
+  const round = (v: number) => (exact ? Math.round(v) : v);
+  return [round(Math.cos((degrees * Math.PI) / 180)), round(Math.sin((degrees * Math.PI) / 180))];
+}
+
+/// Its size around the middle of the platform; of an image that is turned by no quarter turn, that of its bounding box.
+export function area({ image, offset, turn, platform }: Room): [number, number] {
+  const [c, s] = cosineAndSine(turn).map(Math.abs);
+  const [columns, rows] = image.map((size, i) => Math.max(0, size - 2 * Math.abs(offset[i])));
+  return [Math.min(c * columns + s * rows, platform[0]), Math.min(s * columns + c * rows, platform[1])];
+}
+
+/// Whether a part of this size fits with its centre there.
+function holds({ image, offset, turn, platform }: Room, [width, depth]: [number, number], [x, y]: [number, number]): boolean {
+  const slack = 1e-3;
+  const [c, s] = cosineAndSine(turn);
+  return (
+    width + 2 * Math.abs(x) <= platform[0] + slack &&
+    depth + 2 * Math.abs(y) <= platform[1] + slack &&
+    Math.abs(c) * width + Math.abs(s) * depth + 2 * Math.abs(c * x - s * y + offset[0]) <= image[0] + slack &&
+    Math.abs(s) * width + Math.abs(c) * depth + 2 * Math.abs(s * x + c * y + offset[1]) <= image[1] + slack
+  );
+}
+
+/// The grid of copies in as few rows as what can be printed on allows, as placed by `pliant slice --copies`.
+export function placed(points: Float32Array, turn: Degrees, copies: number, spacing: number, room: Room, height: number, scale = 1, at: [number, number] = [0, 0]): Placed {
   const m = rotationOf(turn).scale(new THREE.Vector3(scale, scale, scale));
   const box = new THREE.Box3();
   const p = new THREE.Vector3();
   for (let i = 0; i < points.length; i += 3) box.expandByPoint(p.set(points[i], points[i + 1], points[i + 2]).applyMatrix4(m));
   const part = box.getSize(new THREE.Vector3());
-  const fitting = (room: number, size: number) => Math.max(0, Math.min(10000, Math.floor((room + spacing + 1e-3) / (size + spacing))));
-  const columns = Math.max(1, Math.min(copies, fitting(width, part.x)));
+  const length = (count: number, size: number) => count * size + (count - 1) * spacing;
+  const fits = (columns: number, rows: number) => holds(room, [length(columns, part.x), length(rows, part.y)], [0, 0]);
+  const most = (rows: number) => {
+    let columns = 0;
+    while (columns < copies && fits(columns + 1, rows)) ++columns;
+    return columns;
+  };
+  let columns = most(1);
+  for (let rows = 2; columns * (rows - 1) < copies; ++rows) {
+    const narrower = most(rows);
+    if (narrower === 0) break;
+    columns = narrower;
+  }
+  columns = Math.max(1, columns);
   const rows = Math.ceil(copies / columns);
   const shifts: [number, number][] = [];
   for (let n = 0; n < copies; ++n) shifts.push([(n % columns) * (part.x + spacing), Math.floor(n / columns) * (part.y + spacing)]);
-  const size: [number, number, number] = [columns * part.x + (columns - 1) * spacing, rows * part.y + (rows - 1) * spacing, part.z];
-  const slack = 1e-3;
-  return { size, least: box.min, shifts, fits: size[0] + 2 * Math.abs(at[0]) <= width + slack && size[1] + 2 * Math.abs(at[1]) <= depth + slack && size[2] <= height + slack };
+  const size: [number, number, number] = [length(columns, part.x), length(rows, part.y), part.z];
+  return { size, least: box.min, shifts, fits: holds(room, [size[0], size[1]], at) && size[2] <= height + 1e-3 };
 }
