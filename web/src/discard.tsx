@@ -4,8 +4,9 @@ import { useDialog } from './dismiss';
 import { documentState, helm } from './store';
 import { theirs, text, revert } from './simulate/editor';
 
-/// True if there is text that the studio does not have, or that is in no file.
-export const unsaved = computed(() => helm.value.you && (text.value !== theirs.value || documentState.value.unsaved));
+/// True if there is text that the studio does not have, or that is in no file. The latter is left to the page that has
+/// control.
+export const unsaved = computed(() => text.value !== theirs.value || (helm.value.you && documentState.value.unsaved));
 
 const question = signal<{ what: string; go: () => void } | null>(null);
 

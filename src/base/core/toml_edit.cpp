@@ -194,26 +194,48 @@ Result<std::string> checked(std::string text, std::span<const Aim> aims) {
     return text;
 }
 
+bool ends_in_place(const std::string& part) {
+    return part.ends_with(']');
+}
+
+/// Divides NAME[K], as messages write entries of a list, into the parts NAME and K. False: it is not of that form.
+bool divide(std::vector<std::string>& parts, std::size_t at) {
+    const std::string part = parts[at];
+    const std::size_t open = part.rfind('[');
+    if (open == std::string::npos || open == 0 || !ends_in_place(part)) return false;
+    parts[at] = part.substr(0, open);
+    parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(at) + 1, part.substr(open + 1, part.size() - open - 2));
+    return true;
+}
+
 Result<std::string> edited(std::string_view text, std::string_view path, std::string_view value) {
     if (Status status = is_value(value); !status) return tl::unexpected(status.error());
     Result<toml::table> root = parsed(text);
     if (!root) return tl::unexpected(root.error());
-    const std::vector<std::string> parts = path_parts(path);
+    std::vector<std::string> parts = path_parts(path);
+    std::size_t divided = 0;  // the parts before it are of NAME[K], which names what is there and adds nothing
     toml::node* at = &*root;
     Way way;
     const auto finished = [&](std::string out) { return checked(std::move(out), std::array{Aim{way, value}}); };
     std::vector<std::string> names;  // of the tables and lists on the way, as headers have them
     std::string dotted;              // from the table's header to the table, as of target in `target.tension = "5 N"`
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        if (toml::array* list = at->as_array()) {
-            at = entry_named(*list, parts[k]);
-            if (at == nullptr) return input_error("{}: there is no \"{}\"", path, parts[k]);
+        toml::array* list = at->as_array();
+        toml::table* table = at->as_table();
+        if (list == nullptr && table == nullptr) return input_error("{}: \"{}\" is not a table", path, parts[k - 1]);
+        const auto child = [&] { return list != nullptr ? entry_named(*list, parts[k]) : table->get(parts[k]); };
+        toml::node* next = child();
+        while (next == nullptr && divide(parts, k)) {
+            divided = std::max(divided + 1, k + 2);
+            next = child();
+        }
+        if (next == nullptr && (list != nullptr || k < divided || ends_in_place(parts[k])))
+            return input_error("{}: there is no \"{}\"", path, parts[k]);
+        if (list != nullptr) {
+            at = next;
             way.emplace_back(place_in(*list, *at));
             continue;
         }
-        toml::table* table = at->as_table();
-        if (table == nullptr) return input_error("{}: \"{}\" is not a table", path, parts[k - 1]);
-        toml::node* next = table->get(parts[k]);
         way.emplace_back(parts[k]);
         if (next != nullptr) {
             at = next;
@@ -224,7 +246,8 @@ Result<std::string> edited(std::string_view text, std::string_view path, std::st
             continue;
         }
         if (k + 1 < parts.size()) {
-            if (at != &*root) return input_error("{}: there is no \"{}\"", path, parts[k]);
+            if (at != &*root || std::any_of(parts.begin(), parts.end(), ends_in_place))
+                return input_error("{}: there is no \"{}\"", path, parts[k]);
             way.insert(way.end(), parts.begin() + 1, parts.end());
             return finished(with_new_table(text, parts, value));
         }

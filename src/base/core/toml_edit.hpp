@@ -11,8 +11,8 @@
 namespace pliant::config {
 
 /// `text` with the value at `path` replaced, or added if missing. `path` is as in `--set`: keys separated by dots,
-/// entries of a [[list]] by their `name` ("cable.flexor.friction") or index, names with dots in quotes
-/// (body."finger v1.2".material). `value` is TOML.
+/// entries of a [[list]] by their `name` ("cable.flexor.friction") or index ("cable.0.friction", "cable[0].friction"),
+/// names with dots in quotes (body."finger v1.2".material). `value` is TOML.
 /// Errors: the text or the value is not TOML, the path leads through a value or to a missing entry.
 [[nodiscard]] Result<std::string> with_value(std::string_view text, std::string_view path, std::string_view value);
 

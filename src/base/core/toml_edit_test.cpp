@@ -138,6 +138,24 @@ TEST_CASE("names with dots are parts of a path in quotes") {
     CHECK(config::path_parts("\"a.b") == std::vector<std::string>{"\"a", "b"});
 }
 
+TEST_CASE("entries of lists are found by an index in brackets, and what is not there is refused") {
+    CHECK(with_value(robot, "cable[0].target.length_ratio", "0.75").value() == replaced(robot, "= 0.8", "= 0.75"));
+    CHECK(with_value(robot, "cable[1].target.tension", "\"2 N\"").value() == replaced(robot, "\"1 N\"", "\"2 N\""));
+    CHECK(with_value(robot, "cable.flexor.points[1][2]", "7").value() == replaced(robot, "[3, 4, 5]", "[3, 4, 7]"));
+    CHECK(with_value(robot, "cable[0].friction", "0.1").value() ==
+          with_value(robot, "cable.0.friction", "0.1").value());
+    CHECK(with_value("m = [{ name = \"a[0]\", b = 1 }]\n", "m.a[0].b", "2").value() ==
+          "m = [{ name = \"a[0]\", b = 2 }]\n");
+    for (const char* path :
+         {"cable[2].friction", "cable[-1].friction", "cable[].friction", "cabel[0].friction", "cable[0].points[5]",
+          "cable[0].pull[0]", "parameters[width]", "new[0]", "new.part[0]", "cable[0][1].friction", "[0]"}) {
+        CAPTURE(path);
+        const auto text = with_value(robot, path, "1");
+        REQUIRE_FALSE(text);
+        CHECK(holds(text.error().message, "there is no \""));
+    }
+}
+
 TEST_CASE("invalid edits are refused with a reason") {
     const auto why = [](const Result<std::string>& text) {
         REQUIRE_FALSE(text);

@@ -678,6 +678,7 @@ TEST_CASE("values and entries of the robot file change by request, and a text ca
           {"/api/robot/set", R"({"changes": [{"key": "name"}]})"},
           {"/api/robot/set", R"({"changes": [{"key": "name", "value": null}]})"},
           {"/api/robot/set", R"({"changes": [{"key": "cable.nobody.friction", "value": 1}]})"},
+          {"/api/robot/set", R"({"changes": [{"key": "cable[7].friction", "value": 1}]})"},
           {"/api/robot/add", R"({"list": "marker"})"},
           {"/api/robot/add", R"({"list": "name", "entry": {"a": 1}})"},
           {"/api/robot/set", R"({"changes": [{"key": "mesh.file", "value": "../../etc/passwd"}]})"}}) {

@@ -23,8 +23,8 @@ let loads = 0;
 let savedLine = 0; // the connection, and whether the text was in a file, at the last update
 let wasUnsaved = false;
 
-/// Changes that have not been applied are kept, also those that are typed before the studio's text arrives, and so is
-/// text that a restarted studio no longer has.
+/// Changes that have not been applied are kept, whoever has control by now, also those that are typed before the
+/// studio's text arrives, and so is text that a restarted studio no longer has.
 async function load() {
   const mineBefore = text.value;
   const line = lines.value;
@@ -34,12 +34,14 @@ async function load() {
   const mine = text.value;
   const dirty = (mine !== theirs.value && mine !== applied) || mine !== mineBefore;
   const lost = line !== savedLine && wasUnsaved && next !== theirs.value;
-  const keep = helm.value.you && (dirty || lost) && mine !== next;
+  const keep = (dirty || (lost && helm.value.you)) && mine !== next;
+  const overtaken = keep && !lost && !helm.value.you && next !== theirs.value;
   batch(() => {
     theirs.value = next;
     if (!keep) text.value = next;
   });
   if (lost && keep) say('The studio was restarted without your unsaved text. It is still here under File: press Apply to restore it.');
+  if (overtaken) say('Another page has changed the robot. Your text that was not applied is still here under File.');
   applied = null;
   savedLine = line;
   wasUnsaved = documentState.value.unsaved;

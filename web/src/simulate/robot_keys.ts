@@ -99,7 +99,7 @@ export const robotKeys: Record<string, Record<string, string>> = {
     eyelet_radius: 'length',
     friction: 'number, 0 to 10',
     target: 'table with one of the three below, and optionally offset',
-    'target.length_ratio': 'number above 0, at most 1',
+    'target.length_ratio': 'number above 0, at most 10',
     'target.shortening': 'length',
     'target.tension': 'force',
     'target.offset': 'length; with tension: force',

@@ -70,7 +70,9 @@ function axisOf(key: string): Axis {
   const ratio = k.key.endsWith('_ratio');
   const whole = k.key.startsWith('parameters.') && Number.isInteger(k.value);
   const round = (v: number) => (whole ? Math.round(v) : +v.toPrecision(4));
-  const [from, to] = ratio ? [k.value, 1] : k.value === 0 ? [0, 1] : [round(0.5 * k.value), round(1.5 * k.value)];
+  // Above 1 a cable is slack: from rest it is pulled.
+  const pulled = k.key.endsWith('.length_ratio') && k.value >= 1;
+  const [from, to] = pulled ? [0.7, 1] : ratio ? [k.value, 1] : k.value === 0 ? [0, 1] : [round(0.5 * k.value), round(1.5 * k.value)];
   return { key, other: false, unit: k.unit, from, to: to === from ? from + 1 : to, count: whole ? Math.min(7, Math.abs(to - from) + 1) : 7 };
 }
 
