@@ -311,6 +311,17 @@ TEST_CASE("a remeshed sphere tells how much of its volume is lost, a cube has no
     CHECK(notes_of(box({0, 0, 0}, {10, 10, 10})).find("than its file") == std::string::npos);
 }
 
+TEST_CASE("the wall of a hollow surface is meshed, however thin, and not its cavity") {
+    Progress silent;
+    TriMesh hollow = tessellate(solid(SphereSolid{{0, 0, 0}, 10}), 0.1).value();
+    TriMesh cavity = scaled(hollow, 0.98);
+    for (auto& triangle : cavity.triangles) std::swap(triangle[0], triangle[1]);
+    append(hollow, cavity);
+    const auto mesh = mesh_bodies(std::vector<BodyGeometry>{{"b", hollow}}, {.size = 6, .order = 1}, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(volume(*mesh) == near(signed_volume(hollow), {.relative = 0.1}));
+}
+
 TEST_CASE("triangles that have nothing to do with each other enclose nothing") {
     Progress silent;
     TriMesh soup;

@@ -165,29 +165,54 @@ void follow_size(const SizeAt& size_at, const SolidsOf& solids, double size) {
         });
 }
 
-/// The surface as one discrete entity of the model.
-int add_triangles(const TriMesh& surface) {
+/// The given triangles of a surface as a discrete entity of the model. Every node belongs to the first entity that uses
+/// it: `added` (points).
+int add_triangles(const TriMesh& surface, std::span<const std::size_t> triangles, std::vector<bool>& added) {
     const int entity = gmsh::model::add_discrete_entity(2);
-    std::vector<std::size_t> tags(surface.points.size());
-    std::iota(tags.begin(), tags.end(), std::size_t{1});
-    std::vector<double> coordinates;
-    for (const Vec3& p : surface.points) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
-    gmsh::model::mesh::add_nodes(2, entity, tags, coordinates);
-    std::vector<std::size_t> elements(surface.triangles.size());
-    std::iota(elements.begin(), elements.end(), std::size_t{1});
-    std::vector<std::size_t> nodes;
-    for (const auto& triangle : surface.triangles) {
-        for (const int n : triangle) nodes.push_back(static_cast<std::size_t>(n) + 1);
+    std::vector<std::size_t> tags, elements, nodes;
+    for (const std::size_t t : triangles) {
+        elements.push_back(t + 1);
+        for (const int n : surface.triangles[t]) {
+            const auto point = static_cast<std::size_t>(n);
+            nodes.push_back(point + 1);
+            if (!added[point]) tags.push_back(point + 1);
+            added[point] = true;
+        }
     }
+    std::sort(tags.begin(), tags.end());
+    std::vector<double> coordinates;
+    for (const std::size_t tag : tags) {
+        const Vec3& p = surface.points[tag - 1];
+        coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+    }
+    gmsh::model::mesh::add_nodes(2, entity, tags, coordinates);
     gmsh::model::mesh::add_elements_by_type(entity, 2, elements, nodes);
     return entity;
 }
 
-/// Meshes the region enclosed by the model's surfaces.
-Result<TetMesh> mesh_enclosed(double size, const SizeAt& size_at) {
-    std::vector<int> loop;
-    for (const auto& [dimension, tag] : gmsh::model::get_entities(2)) loop.push_back(tag);
-    const int volume = gmsh::model::geo::add_volume({gmsh::model::geo::add_surface_loop(loop)});
+/// The surface as one discrete entity of the model.
+void add_surface(const TriMesh& surface) {
+    std::vector<std::size_t> all(surface.triangles.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    std::vector<bool> added(surface.points.size(), false);
+    add_triangles(surface, all, added);
+}
+
+/// The surface as one discrete entity per shell: Gmsh finds regions by the entities around them, so that a cavity whose
+/// wall is in one entity with the outer shell would be no hole.
+std::vector<int> add_shells(const TriMesh& surface) {
+    std::vector<bool> added(surface.points.size(), false);
+    std::vector<int> entities;
+    for (const std::vector<std::size_t>& shell : shell_triangles(surface))
+        entities.push_back(add_triangles(surface, shell, added));
+    return entities;
+}
+
+/// Meshes the region that loops of surfaces enclose; a loop may consist of separate ones.
+Result<TetMesh> mesh_enclosed(const std::vector<std::vector<int>>& loops, double size, const SizeAt& size_at) {
+    std::vector<int> shells;
+    for (const std::vector<int>& loop : loops) shells.push_back(gmsh::model::geo::add_surface_loop(loop));
+    const int volume = gmsh::model::geo::add_volume(shells);
     gmsh::model::geo::synchronize();
     set_size(size);
     follow_size(size_at, {}, size);
@@ -327,14 +352,23 @@ Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double ang
     // With few triangles in a shell Gmsh may loop forever, splitting a part in two.
     constexpr std::size_t enough = 64;
     const auto anew = [&]() -> Result<TetMesh> {
-        add_triangles(with_enough_triangles(surface, enough));
+        add_surface(with_enough_triangles(surface, enough));
         gmsh::model::mesh::classify_surfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
         gmsh::model::mesh::create_geometry();
-        return mesh_enclosed(size, size_at);
+        std::vector<int> all;
+        for (const auto& [dimension, tag] : gmsh::model::get_entities(2)) all.push_back(tag);
+        return mesh_enclosed({all}, size, size_at);
     };
     const auto as_drawn = [&]() -> Result<TetMesh> {
-        add_triangles(surface);
-        return mesh_enclosed(size, size_at);
+        std::vector<std::vector<int>> loops;
+        for (const int shell : add_shells(surface)) loops.push_back({shell});
+        Result<TetMesh> mesh = mesh_enclosed(loops, size, size_at);
+        constexpr double tolerance = 1e-3;  // with the same triangles the mesh has the same volume
+        const double drawn = signed_volume(surface);
+        if (mesh && std::fabs(volume(*mesh) - drawn) > tolerance * std::fabs(drawn))
+            return failure("meshing: the mesh has a volume of {:.6g}, the surface encloses {:.6g}", volume(*mesh),
+                           drawn);
+        return mesh;
     };
     // Gmsh's parametrisation hangs or crashes on triangles without area.
     Result<TetMesh> mesh = has_flat_triangles(surface) ? failure("meshing: the surface has triangles without area")

@@ -40,7 +40,7 @@ using SizeAt = std::function<double(std::size_t, const Vec3&)>;
 
 /// Remeshes the inside of a closed surface (one outer shell and its cavities), linear, in one region. Edges sharper
 /// than `angle_deg` are preserved. If a dihedral angle is under 5 degrees, edges get up to a fifth shorter. A surface
-/// that cannot be parametrised keeps its triangles, and a note says so.
+/// that cannot be parametrised keeps its triangles, and a note says so; error if the mesh then has another volume.
 [[nodiscard]] Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg,
                                            const SizeAt& size_at = {});
 

@@ -79,15 +79,75 @@ Box3 united(Box3 a, const Box3& b) {
     return a;
 }
 
+/// A turn about the origin.
+class SolidTurn {
+public:
+    SolidTurn() = default;
+    explicit SolidTurn(const RotatedSolid& s) : any_(true) {
+        const Vec3 axis = unit(s.axis);
+        for (std::size_t k = 0; k < 3; ++k) {
+            Vec3 side;
+            side[k] = 1;
+            sides_[k] = turned(side, axis, s.angle_rad);
+        }
+    }
+    [[nodiscard]] SolidTurn after(const SolidTurn& first) const {
+        SolidTurn both = first;
+        for (Vec3& side : both.sides_) side = of(side);
+        return both;
+    }
+    [[nodiscard]] bool any() const { return any_; }
+    [[nodiscard]] Vec3 of(const Vec3& p) const {
+        return any_ ? p.x * sides_[0] + p.y * sides_[1] + p.z * sides_[2] : p;
+    }
+
+private:
+    bool any_ = false;           ///< false: coordinates keep their digits
+    std::array<Vec3, 3> sides_;  ///< where the axes point afterwards
+};
+
+Box3 shifted(const Box3& box, const Vec3& by) {
+    return {box.low + by, box.high + by};
+}
+
+/// The box of a solid that is turned. Turns go down to the simple shapes: the box of a turned box is too large.
 struct Bounds {
-    Box3 operator()(const BoxSolid& s) const { return {s.low, s.high}; }
+    SolidTurn turn;
+
+    [[nodiscard]] Box3 of(const Solid& solid) const { return std::visit(*this, solid->shape); }
+    [[nodiscard]] Box3 of(const std::vector<Solid>& solids) const {
+        Box3 box = of(solids.front());
+        for (std::size_t i = 1; i < solids.size(); ++i) box = united(box, of(solids[i]));
+        return box;
+    }
+    [[nodiscard]] Box3 of(const TriMesh& surface) const {
+        if (!turn.any()) return bounds(surface);
+        Box3 box;
+        for (const Vec3& p : surface.points) box.add(turn.of(p));
+        return box;
+    }
+    [[nodiscard]] Box3 of(const Box3& own) const {
+        if (!turn.any()) return own;
+        Box3 box;
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            box.add(turn.of({(corner & 1U) != 0 ? own.high.x : own.low.x, (corner & 2U) != 0 ? own.high.y : own.low.y,
+                             (corner & 4U) != 0 ? own.high.z : own.low.z}));
+        }
+        return box;
+    }
+
+    Box3 operator()(const BoxSolid& s) const { return of(Box3{s.low, s.high}); }
     Box3 operator()(const SphereSolid& s) const {
         const Vec3 r{s.radius, s.radius, s.radius};
-        return {s.center - r, s.center + r};
+        const Vec3 center = turn.of(s.center);
+        return {center - r, center + r};
     }
+    /// A disc reaches along an axis by its radius times the sine of the angle between that axis and its normal.
     Box3 operator()(const CylinderSolid& s) const {
-        const Vec3 r{s.radius, s.radius, s.radius};
-        return united({s.from - r, s.from + r}, {s.to - r, s.to + r});
+        const Vec3 from = turn.of(s.from), to = turn.of(s.to), along = unit(to - from);
+        Vec3 reach;
+        for (std::size_t k = 0; k < 3; ++k) reach[k] = s.radius * std::hypot(along[(k + 1) % 3], along[(k + 2) % 3]);
+        return united({from - reach, from + reach}, {to - reach, to + reach});
     }
     Box3 operator()(const PrismSolid& s) const {
         Box3 box;
@@ -97,17 +157,19 @@ struct Bounds {
                 p[static_cast<std::size_t>(s.axes[0])] = u;
                 p[static_cast<std::size_t>(s.axes[1])] = v;
                 p[static_cast<std::size_t>(s.axes[2])] = w;
-                box.add(p);
+                box.add(turn.of(p));
             }
         }
         return box;
     }
     Box3 operator()(const CombinedSolid& s) const {
-        Box3 box = bounds(s.parts.front());
+        using Operation = CombinedSolid::Operation;
+        if (s.operation == Operation::unite) return of(s.parts);
+        if (s.operation == Operation::subtract) return of(s.parts.front());
+        if (turn.any()) return of(Bounds{}(s));  // large shapes may have a small part in common
+        Box3 box = of(s.parts.front());
         for (std::size_t i = 1; i < s.parts.size(); ++i) {
-            const Box3 other = bounds(s.parts[i]);
-            if (s.operation == CombinedSolid::Operation::unite) box = united(box, other);
-            if (s.operation != CombinedSolid::Operation::intersect) continue;
+            const Box3 other = of(s.parts[i]);
             for (std::size_t a = 0; a < 3; ++a) {
                 box.low[a] = std::max(box.low[a], other.low[a]);
                 box.high[a] = std::min(box.high[a], other.high[a]);
@@ -115,37 +177,19 @@ struct Bounds {
         }
         return box;
     }
-    Box3 operator()(const TranslatedSolid& s) const {
-        const Box3 box = bounds(s.of);
-        return {box.low + s.offset, box.high + s.offset};
-    }
+    Box3 operator()(const TranslatedSolid& s) const { return shifted(of(s.of), turn.of(s.offset)); }
     Box3 operator()(const RotatedSolid& s) const {
-        const Box3 box = bounds(s.of);
-        Box3 result;
-        for (int corner = 0; corner < 8; ++corner) {
-            const Vec3 p{(corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
-                         (corner & 4) != 0 ? box.high.z : box.low.z};
-            result.add(rotated(p, s, s.angle_rad));
-        }
-        return result;
+        const SolidTurn own(s);
+        return shifted(Bounds{turn.after(own)}.of(s.of), turn.of(s.center - own.of(s.center)));
     }
     Box3 operator()(const RepeatedSolid& s) const {
-        const Box3 box = bounds(s.of);
-        const Vec3 last = (s.count - 1) * s.step;
-        return united(box, {box.low + last, box.high + last});
+        const Box3 box = of(s.of);
+        return united(box, shifted(box, turn.of((s.count - 1) * s.step)));
     }
-    Box3 operator()(const EnclosedSolid& s) const {
-        Box3 box = bounds(s.walls.front());
-        for (const Solid& wall : s.walls) box = united(box, bounds(wall));
-        return box;
-    }
-    Box3 operator()(const NotchesSolid& s) const {
-        Box3 box = bounds(s.hulls.front());
-        for (const Solid& hull : s.hulls) box = united(box, bounds(hull));
-        return box;
-    }
-    Box3 operator()(const PolyhedronSolid& s) const { return bounds(s.surface->surface()); }
-    Box3 operator()(const StepSolid& s) const { return bounds(s.surface->surface()); }
+    Box3 operator()(const EnclosedSolid& s) const { return of(s.walls); }
+    Box3 operator()(const NotchesSolid& s) const { return of(s.hulls); }
+    Box3 operator()(const PolyhedronSolid& s) const { return of(s.surface->surface()); }
+    Box3 operator()(const StepSolid& s) const { return of(s.surface->surface()); }
 };
 
 }  // namespace
@@ -155,7 +199,7 @@ bool contains(const Solid& solid, const Vec3& point) {
 }
 
 Box3 bounds(const Solid& solid) {
-    return std::visit(Bounds{}, solid->shape);
+    return Bounds{}.of(solid);
 }
 
 }  // namespace pliant::mesh

@@ -105,7 +105,8 @@ struct SolidNode {
 /// Between walls: true in any piece.
 [[nodiscard]] bool contains(const Solid& solid, const Vec3& point);
 
-/// A box that contains the solid (not always the smallest one).
+/// A box that contains the solid: the smallest one for simple shapes, however turned, for their unions and repetitions;
+/// what is cut away makes it no smaller.
 [[nodiscard]] Box3 bounds(const Solid& solid);
 
 /// Shapes that `use` may name.

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace pliant;
 using namespace pliant::mesh;
 
@@ -62,6 +64,54 @@ TEST_CASE("bounds contain the solid") {
     CHECK(box.low.x <= -1);
     CHECK(box.high.x >= 11);
     CHECK(box.high.y >= 3);
+}
+
+TEST_CASE("bounds of simple shapes are the smallest box, also turned") {
+    struct Row {
+        const char* text;
+        Vec3 low, high;
+    };
+    const double h = std::sqrt(0.5);
+    for (const Row& row : {
+             Row{"{ cylinder = { from = [0,0,0], to = [0,0,9], radius = 2 } }", {-2, -2, 0}, {2, 2, 9}},
+             Row{"{ cylinder = { from = [0,0,1], to = [4,0,5], radius = 2 } }",
+                 {-2 * h, -2, 1 - 2 * h},
+                 {4 + 2 * h, 2, 5 + 2 * h}},
+             Row{"{ rotate = 45, axis = [0,1,0], of = { cylinder = { from = [0,0,0], to = [0,0,9], radius = 2 } } }",
+                 {-2 * h, -2, -2 * h},
+                 {11 * h, 2, 11 * h}},
+             Row{"{ rotate = 45, axis = [0,0,1], of = { sphere = { center = [0,0,0], radius = 3 } } }",
+                 {-3, -3, -3},
+                 {3, 3, 3}},
+             Row{"{ rotate = 45, axis = [0,0,3], of = { rotate = 45, axis = [0,0,1], of = { box = [[0,0,0],[4,2,1]] } "
+                 "} }",
+                 {-2, 0, 0},
+                 {0, 4, 1}},
+             Row{"{ rotate = 90, axis = [0,0,1], center = [5,0,0], of = { translate = [0,0,7], of = { union = [{ box = "
+                 "[[0,0,0],[4,2,1]] }, { sphere = { center = [0,0,0], radius = 1 } }] } } }",
+                 {3, -6, 6},
+                 {6, -1, 8}},
+             Row{"{ rotate = 90, axis = [1,0,0], of = { repeat = 3, step = [0,5,0], of = { prism = "
+                 "[[0,0],[4,0],[0,3]], "
+                 "from = 0, to = 1 } } }",
+                 {0, -1, 0},
+                 {4, 0, 13}},
+             Row{"{ rotate = 45, axis = [0,0,1], of = { intersection = [{ box = [[-9,-1,0],[9,1,1]] }, { box = "
+                 "[[-1,-9,0],[1,9,1]] }] } }",
+                 {-2 * h, -2 * h, 0},
+                 {2 * h, 2 * h, 1}},
+             Row{"{ rotate = 45, axis = [0,0,1], of = { difference = [{ box = [[0,0,0],[2,2,1]] }, { sphere = { center "
+                 "= [9,9,9], radius = 1 } }] } }",
+                 {-2 * h, 0, 0},
+                 {2 * h, 4 * h, 1}},
+         }) {
+        CAPTURE(row.text);
+        Solid solid;
+        REQUIRE(read(row.text, solid).empty());
+        const Box3 box = bounds(solid);
+        CHECK(norm(box.low - row.low) < 1e-12);
+        CHECK(norm(box.high - row.high) < 1e-12);
+    }
 }
 
 TEST_CASE("a shape that uses itself, or doubles at every level, is refused") {
