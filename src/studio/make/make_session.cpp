@@ -73,12 +73,15 @@ Status MakeSession::save(const std::filesystem::path& file) {
         return input_error("there is no folder {}", file.parent_path().filename().string());
     const Result<std::string> bytes = read_file(job->file);
     if (!bytes) return tl::unexpected(bytes.error());
+    if (Status unchanged = job->unchanged(); !unchanged) return unchanged;
     if (Status written = write_file(file, *bytes); !written) return written;
     return adopt(file, {job->origin.source, job->origin.colours, nullptr}, job->key, job);
 }
 
 Status MakeSession::adopt(const std::filesystem::path& file, JobOrigin origin, const std::string& key,
                           const std::shared_ptr<OpenJob>& saved) {
+    // Before the file is read: a change meanwhile is then noticed later.
+    const std::optional<FileStamp> stamp = stamp_of(file);
     Result<operate::OpenJob> open = operate::open_job(file);
     if (!open) return tl::unexpected(open.error());
     if (origin.colours.empty()) origin.colours = colours_of(open->archive.manifest());
@@ -88,6 +91,7 @@ Status MakeSession::adopt(const std::filesystem::path& file, JobOrigin origin, c
         if (saved && job_ != saved) return {};                     // another one has become the job since
         if (job_ && job_->file != file && !saved) before_ = job_;  // under another name it is the same job
         job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
+        job_->stamp = stamp;
         job_->origin = std::move(origin);
         if (!key.empty()) job_->key = key;
         news = dumped({{"type", "job"}, {"revision", revision_}});
@@ -128,15 +132,17 @@ void MakeSession::work(const SliceOrder& order) {
 }
 
 Result<std::shared_ptr<OpenJob>> MakeSession::other(const std::filesystem::path& file) {
+    const std::optional<FileStamp> stamp = stamp_of(file);
     {
         const std::lock_guard lock(mutex_);
         if (file.empty()) return before_;
-        if (other_ && other_->file == file) return other_;
+        if (other_ && other_->file == file && other_->stamp == stamp) return other_;
     }
     Result<operate::OpenJob> open = operate::open_job(file);
     if (!open) return tl::unexpected(open.error());
     const std::lock_guard lock(mutex_);
     auto made = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, -(++others_));
+    made->stamp = stamp;
     made->origin.colours = colours_of(made->archive.manifest());
     return other_ = made;
 }

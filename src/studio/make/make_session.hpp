@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -16,6 +17,7 @@
 #include "printing/machine/printer.hpp"
 #include "printing/prepare/slice_job.hpp"
 #include "studio/base/access.hpp"
+#include "studio/base/file_stamp.hpp"
 #include "studio/make/job_under_way.hpp"
 
 namespace pliant::studio {
@@ -55,10 +57,15 @@ struct OpenJob {
     machine::Printer printer;
     std::filesystem::path file;
     int revision;
-    std::string key = random_key();  ///< in the addresses of its images, which browsers keep for ever
-    JobOrigin origin{};              ///< with colours of all materials
-    std::mutex mutex{};              ///< an archive must be used by one thread at a time
-    std::string part{};              ///< see job_part(); "": not requested yet
+    std::string key = random_key();    ///< in the addresses of its images, which browsers keep for ever
+    std::optional<FileStamp> stamp{};  ///< of the file when it was opened
+    JobOrigin origin{};                ///< with colours of all materials
+    std::mutex mutex{};                ///< an archive must be used by one thread at a time
+    std::string part{};                ///< see job_part(); "": not requested yet
+
+    /// Error: the file is not the one that was opened. What is printed is read from it again, and must be what is
+    /// shown.
+    [[nodiscard]] Status unchanged() const { return check_unchanged(file, stamp); }
 };
 
 /// The error of every request that needs a job.
@@ -72,8 +79,8 @@ public:
     MakeSession& operator=(const MakeSession&) = delete;
 
     [[nodiscard]] Status open(const std::filesystem::path& file);
-    /// Saves the current job to a file, which it uses from then on; it keeps its key. Errors: there is none, the file
-    /// exists, it cannot be written.
+    /// Saves the current job to a file, which it uses from then on; it keeps its key. Errors: there is none, its
+    /// own file has changed, the file exists, it cannot be written.
     [[nodiscard]] Status save(const std::filesystem::path& file);
     /// Starts slicing; the pages are told of its progress and its end. Errors: it is slicing already.
     [[nodiscard]] Status slice(SliceOrder order);
@@ -82,7 +89,7 @@ public:
     /// The layers of the job that is being sliced.
     [[nodiscard]] const JobUnderWay& under_way() const { return under_way_; }
     /// A job to compare the current one with: the previous one, null if there was none, or `file`, whose revision is
-    /// below 0. Errors: not a job.
+    /// below 0; read again once it has changed. Errors: not a job.
     [[nodiscard]] Result<std::shared_ptr<OpenJob>> other(const std::filesystem::path& file = {});
     [[nodiscard]] std::vector<std::string> news() const;
 

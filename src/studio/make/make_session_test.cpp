@@ -142,6 +142,37 @@ TEST_CASE("a job remembers what it was sliced from, also after it has been saved
     CHECK(session.job()->key != key);
 }
 
+TEST_CASE("a job whose file has changed is told from the one that was opened, and another one is read again") {
+    const pliant::test::Folder folder;
+    Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    const auto sliced = [&](const std::string& to, const std::string& layer) {
+        SliceOrder order = slice_order();
+        order.order.layer = layer;
+        events.clear();
+        REQUIRE(session.slice(order).has_value());
+        REQUIRE(end_of_slicing(events) == "");
+        REQUIRE(session.save(folder / to).has_value());
+    };
+    sliced("b.zip", "40 um");
+    sliced("a.zip", "50 um");
+    const auto job = session.job();
+    CHECK(job->unchanged());
+    const auto beside = session.other(folder / "b.zip").value();
+    CHECK(session.other(folder / "b.zip").value() == beside);
+    CHECK(beside->archive.manifest().layers.size() == 50);
+    fs::rename(folder / "b.zip", folder / "c.zip");
+    REQUIRE(write_file(folder / "b.zip", read_file(folder / "a.zip").value()));
+    CHECK(session.other(folder / "b.zip").value()->archive.manifest().layers.size() == 40);
+    fs::rename(folder / "c.zip", folder / "a.zip");
+    CHECK(job->unchanged().error().message == "a.zip has changed since it was opened: open it again");
+    CHECK(session.save(folder / "d.zip").error().message == job->unchanged().error().message);
+    CHECK_FALSE(fs::exists(folder / "d.zip"));
+    REQUIRE(session.open(folder / "a.zip"));
+    CHECK(session.job()->archive.manifest().layers.size() == 50);
+    CHECK(session.job()->key != job->key);
+}
+
 TEST_CASE("the file of a sliced job is deleted as soon as nothing uses it") {
     Events events;
     MakeSession session([&](const std::string& json) { events.add(json); }, "test");

@@ -111,6 +111,7 @@ Response layer_image(OpenJob& open, const Request& request) {
     if (layer < 0 || layer >= static_cast<int>(layers.size())) return error_response(404, "there is no such layer");
     for (const job::LayerImage& entry : layers[static_cast<std::size_t>(layer)].images) {
         if (entry.material != material) continue;
+        if (const Status unchanged = open.unchanged(); !unchanged) return error_response(unchanged.error());
         const std::lock_guard lock(open.mutex);
         Result<std::string> png = open.archive.file(entry.file);
         if (!png) return error_response(png.error());

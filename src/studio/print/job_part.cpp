@@ -22,6 +22,7 @@ std::size_t layers_a_step(const job::Manifest& manifest) {
 
 Result<std::string> job_part(OpenJob& open) {
     const std::lock_guard lock(open.mutex);
+    if (Status unchanged = open.unchanged(); !unchanged) return tl::unexpected(unchanged.error());
     if (!open.part.empty()) return open.part;
     const job::Manifest& manifest = open.archive.manifest();
     const auto& layers = manifest.layers;

@@ -73,7 +73,7 @@ Status PrintQueue::set(std::vector<std::string> jobs) {
     for (const std::string& name : jobs) {
         const Result<std::filesystem::path> path = folder_.resolve(name);
         if (!path) return tl::unexpected(path.error());
-        if (path->extension() != ".zip") return input_error("\"{}\": a job (.zip) is needed", name);
+        if (lower_extension(*path) != ".zip") return input_error("\"{}\": a job (.zip) is needed", name);
     }
     {
         const std::lock_guard lock(mutex_);

@@ -25,8 +25,9 @@ TEST_CASE("a queue is kept when the studio ends, and a print that begins is remo
     {
         PrintQueue queue(project, tell);
         CHECK(queue.jobs().empty());
+        REQUIRE(queue.set({"BAR.ZIP"}).has_value());
         REQUIRE(queue.set({"bar.zip", "gone.zip", "bar.zip"}).has_value());
-        CHECK(events.count("queue") == 1);
+        CHECK(events.count("queue") == 2);
     }
     PrintQueue queue(project, tell);
     CHECK(queue.jobs() == std::vector<std::string>{"bar.zip", "gone.zip", "bar.zip"});

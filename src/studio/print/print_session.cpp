@@ -252,9 +252,11 @@ Result<std::string> PrintSession::verdict_picture() const {
 Status PrintSession::take_twin(const Order& order, double speed) {
     if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
     const std::lock_guard one_at_a_time(orders_);
+    if (Status unchanged = order.unchanged(); !unchanged) return unchanged;  // with the machine still connected
     if (Status status = leave(); !status) return status;
     Result<operate::ReadyJob> ready = operate::load_job(order.job);
     if (!ready) return tl::unexpected(ready.error());
+    if (Status unchanged = order.unchanged(); !unchanged) return unchanged;
     Result<std::optional<job::Image>> mask = operate::mask_of(*ready->archive, ready->printer.projector);
     if (!mask) return tl::unexpected(mask.error());
     twin::Options options;
@@ -297,9 +299,11 @@ Status PrintSession::recall(Machine& machine) {
 Status PrintSession::take_port(const Order& order, const operate::PortOptions& port) {
     if (Status status = check_device(port.device); !status) return status;
     const std::lock_guard one_at_a_time(orders_);
+    if (Status unchanged = order.unchanged(); !unchanged) return unchanged;  // with the machine still connected
     if (Status status = leave(); !status) return status;
     Result<operate::ReadyJob> ready = operate::load_job(order.job);
     if (!ready) return tl::unexpected(ready.error());
+    if (Status unchanged = order.unchanged(); !unchanged) return unchanged;
     auto station = operate::PortStation::open(port, *ready);
     if (!station) return tl::unexpected(station.error());
     ++taken_;

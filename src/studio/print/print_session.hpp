@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "printing/host/control_api.hpp"
 #include "printing/operate/port_station.hpp"
 #include "printing/operate/print_job.hpp"
+#include "studio/base/file_stamp.hpp"
 #include "studio/print/paced_twin.hpp"
 #include "studio/print/print_news.hpp"
 
@@ -35,10 +37,13 @@ public:
         std::filesystem::path journal{};        ///< of a virtual print; "": a temporary one, deleted with the session
         std::string key{};                      ///< of the job, see OpenJob::key
         std::shared_ptr<const void> scratch{};  ///< keeps the job's file, if that is a temporary one
+        std::optional<FileStamp> stamp{};       ///< of that file as it is shown; nullopt: it may be any
+        /// Error: the file has another stamp by now.
+        [[nodiscard]] Status unchanged() const { return stamp ? check_unchanged(job, stamp) : Status{}; }
     };
     /// Connects to a twin of the machine that the job was made for. Refused during a print. If the journal holds an
     /// interrupted print of this job, the twin is restored to the state at the interruption, and the print can be
-    /// resumed; a journal of another job is put aside (".old"). Errors: the job cannot be printed.
+    /// resumed; a journal of another job is put aside (".old"). Errors: the job cannot be printed, or has changed.
     [[nodiscard]] Status take_twin(const Order& order, double speed);
     /// Connects to the machine at a serial port. The journal is beside the job, so that an interrupted print can be
     /// resumed. Whether the port answers is shown in the state. Errors: the job cannot be printed, the device does not

@@ -75,6 +75,17 @@ TEST_CASE("without a machine there is nothing to ask, to show or to control") {
     CHECK(events.count("machine") == 0);
 }
 
+TEST_CASE("a job whose file has changed is not printed as the one that was shown") {
+    PrintBench b;
+    b.order.stamp = stamp_of(b.order.job);
+    REQUIRE(b.session.take_twin(b.order, 1000).has_value());
+    REQUIRE(write_file(b.order.job, read_file(b.order.job).value()).has_value());
+    CHECK(holds(b.session.take_twin(b.order, 1000).error().message, "has changed since it was opened"));
+    CHECK(b.session.files().job == b.order.job);  // still connected
+    b.order.stamp = stamp_of(b.order.job);
+    CHECK(b.session.take_twin(b.order, 1000).has_value());
+}
+
 TEST_CASE("invalid requests for a machine are refused with the reason, and the current machine stays") {
     PrintBench b;
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -67,7 +67,7 @@ Response thumbnail(Studio& studio, const Request& request) {
     }
     const Result<std::filesystem::path> path = studio.folder().resolve(name);
     if (!path) return error_response(path.error());
-    if (path->extension() == ".zip") return picture_of_job(*path);
+    if (lower_extension(*path) == ".zip") return picture_of_job(*path);
     if (lower_extension(*path) != ".toml")
         return error_response(404, "there are pictures of robot files and jobs only");
     const Result<std::string> text = read_file(*path, largest_robot);

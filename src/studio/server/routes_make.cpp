@@ -66,7 +66,7 @@ Result<std::shared_ptr<OpenJob>> other_job(Studio& studio, const Request& reques
     if (name.empty()) return studio.make().other();
     const Result<std::filesystem::path> path = studio.folder().resolve(name);
     if (!path) return tl::unexpected(path.error());
-    if (path->extension() != ".zip") return input_error("\"{}\": a job (.zip) is needed", name);
+    if (lower_extension(*path) != ".zip") return input_error("\"{}\": a job (.zip) is needed", name);
     return studio.make().other(*path);
 }
 
@@ -111,13 +111,14 @@ Response download(Studio& studio, const Request&) {
     if (!open) return no_job();
     Result<std::string> bytes = read_file(open->file);
     if (!bytes) return error_response(bytes.error());
+    if (const Status unchanged = open->unchanged(); !unchanged) return error_response(unchanged.error());
     return {200, "application/zip", std::move(*bytes), "job.zip"};
 }
 
 Response save(Studio& studio, const Request& request) {
     const Result<std::filesystem::path> path = studio.folder().resolve(body_text(request, "name"));
     if (!path) return error_response(path.error());
-    if (path->extension() != ".zip") return error_response(422, "a job file ends with .zip");
+    if (lower_extension(*path) != ".zip") return error_response(422, "a job file ends with .zip");
     return done(studio.make().save(*path));
 }
 

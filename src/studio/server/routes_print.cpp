@@ -27,7 +27,7 @@ Response take_twin(Studio& studio, const Request& request) {
     const bool lies = studio.folder().holds(job->file);
     return done(studio.print().take_twin(
         {job->file, job->origin.colours, lies ? virtual_journal(job->file) : std::filesystem::path(), job->key,
-         job->origin.scratch},
+         job->origin.scratch, job->stamp},
         speed_of(request)));
 }
 
@@ -46,7 +46,7 @@ Response take_port(Studio& studio, const Request& request) {
         if (!file) return error_response(422, "clock: " + file.error().message);
         port.clock_file = *file;
     }
-    return done(studio.print().take_port({job->file, job->origin.colours, {}, job->key, {}}, port));
+    return done(studio.print().take_port({job->file, job->origin.colours, {}, job->key, {}, job->stamp}, port));
 }
 
 Response journals(Studio& studio, const Request&) {

@@ -197,7 +197,7 @@ Status Studio::save(const std::string& name) {
 Status Studio::open_file(const std::string& name) {
     const Result<std::filesystem::path> path = folder_.resolve(name);
     if (!path) return tl::unexpected(path.error());
-    if (path->extension() == ".zip") return make_->open(*path);
+    if (lower_extension(*path) == ".zip") return make_->open(*path);
     if (lower_extension(*path) != ".toml")
         return input_error("\"{}\": a robot file (.toml) or a job (.zip) is needed", name);
     const Result<std::string> text = read_file(*path, largest_robot);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
@@ -369,6 +370,53 @@ TEST_CASE("a robot text from the page cannot read files outside the folder") {
     CHECK(ask(studio, "GET", "/api/robot").body == project_bar);
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"../outside.stl"})").status == 422);
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"/etc/passwd"})").status == 422);
+}
+
+TEST_CASE("a job whose file has changed is not printed, saved or shown as the one that was opened") {
+    const Project project;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
+    studio::test::Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    for (const char* name : {"one.zip", "TWO.ZIP"}) {
+        events.clear();
+        REQUIRE(session.slice(studio::test::slice_order()).has_value());
+        REQUIRE(studio::test::end_of_slicing(events) == "");
+        REQUIRE(session.save(project.base / "project" / name).has_value());
+    }
+    REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"one.zip"})").status == 200);
+    CHECK(ask(studio, "GET", "/api/job/layers/3/0").status == 200);
+    fs::rename(project.base / "project" / "TWO.ZIP", project.base / "project" / "one.zip");
+    for (const auto& [method, path, body] :
+         {std::tuple("POST", "/api/print/twin", R"({"speed":10})"), {"POST", "/api/job/save", R"({"name":"new.zip"})"},
+          {"GET", "/api/job/file", ""}, {"GET", "/api/job/layers/3/0", ""}, {"GET", "/api/job/part", ""}}) {
+        const Response answer = ask(studio, method, path, body);
+        CHECK_MESSAGE(answer.status == 409, path);
+        CHECK_MESSAGE(holds(answer.body, "one.zip has changed since it was opened: open it again"), path);
+    }
+    CHECK(studio.print().files().job.empty());
+    REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"one.zip"})").status == 200);
+    CHECK(ask(studio, "GET", "/api/job/layers/3/0").status == 200);
+    CHECK(ask(studio, "GET", "/api/job/file").status == 200);
+}
+
+TEST_CASE("jobs are jobs whatever the case of their ending") {
+    const Project project;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
+    studio::test::Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    REQUIRE(session.slice(studio::test::slice_order()).has_value());
+    REQUIRE(studio::test::end_of_slicing(events) == "");
+    REQUIRE(session.save(project.base / "project" / "BAR.ZIP").has_value());
+    CHECK(ask(studio, "POST", "/api/open", R"({"name":"BAR.ZIP"})").status == 200);
+    CHECK(ask(studio, "POST", "/api/job/save", R"({"name":"COPY.Zip"})").status == 200);
+    Request other{"GET", "/api/job/other"};
+    other.query["name"] = "BAR.ZIP";
+    CHECK(studio.handle(other).status == 200);
+    Request picture{"GET", "/api/thumbnail"};
+    picture.query["file"] = "BAR.ZIP";
+    CHECK(studio.handle(picture).status == 200);
 }
 
 TEST_CASE("a page that is not in control cannot change anything") {
