@@ -48,6 +48,8 @@ struct Document {
 /// tables are found by `name` or by index from 0; names with dots are put in quotes), VALUE is TOML or, failing that,
 /// plain text. Missing tables and keys are added.
 [[nodiscard]] Status set(Document& document, std::string_view assignment);
+/// The VALUE of `KEY=VALUE` as set() reads it; the whole text if it has no '='.
+[[nodiscard]] Value assigned_value(std::string_view assignment);
 
 /// Where `--set` brings the value of a path: equal for all spellings of one place, such as cable.flexor and cable[0].
 struct Place {

@@ -247,6 +247,18 @@ Result<Document> load(const std::filesystem::path& file) {
     return parse(*text, file);
 }
 
+Value assigned_value(std::string_view assignment) {
+    const std::size_t equals = assignment.find('=');
+    const std::string text(equals == std::string_view::npos ? assignment : assignment.substr(equals + 1));
+    Value value;
+    value.data = text;
+    Result<Document> parsed = parse("value = " + text, "--set");
+    if (parsed && std::get<Table>(parsed->root.data).size() == 1) {
+        value.data = std::move(std::get<Table>(parsed->root.data).front().second.data);
+    }
+    return value;
+}
+
 Status set(Document& document, std::string_view assignment) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string_view::npos || equals == 0) {
@@ -255,14 +267,7 @@ Status set(Document& document, std::string_view assignment) {
     const std::string_view key = assignment.substr(0, equals);
     const std::vector<std::string> parts = path_parts(key);
     if (parts.size() > max_depth + 1) return input_error("--set {}...: the key has too many parts", key.substr(0, 40));
-    const std::string text(assignment.substr(equals + 1));
-    Result<Document> parsed = parse("value = " + text, "--set");
-    Value value;
-    value.data = text;
-    if (parsed && std::get<Table>(parsed->root.data).size() == 1) {
-        value.data = std::get<Table>(parsed->root.data).front().second.data;
-    }
-
+    Value value = assigned_value(assignment);
     Value* node = &document.root;
     for (const std::string& part : parts) {
         Value* child = find_part(*node, part);

@@ -1,6 +1,7 @@
 #include "studio/requests/project_folder.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <system_error>
 
 #include "base/core/config.hpp"
@@ -48,6 +49,56 @@ void visit_texts(const config::Value& value, const Visit& visit) {
         for (const config::Entry& entry : *table) visit_texts(entry.second, visit);
     }
 }
+
+/// A text of a document that may be a path.
+struct Named {
+    std::string text;
+    std::string shown;  ///< as the document itself would name it, also if it stands in a file on which that is based
+    fs::path path;
+};
+using Visit = std::function<void(const Named&)>;
+using MayRead = std::function<bool(const Named&)>;
+
+/// The file of `robot = "FILE.toml"`; null without that key.
+const std::string* base_of(const config::Document& document) {
+    for (const auto& [key, value] : std::get<config::Table>(document.root.data)) {
+        if (key == "robot") return std::get_if<std::string>(&value.data);
+    }
+    return nullptr;
+}
+
+/// All texts of the document and of the file on which it is based, if that may be read. What a document changes of its
+/// base is read as if it stood there, so that a path in it is relative to the folder of the base.
+void visit_names(const config::Document& document, const fs::path& place, int deepest, const MayRead& may_read,
+                 const Visit& visit) {
+    const auto names_in = [&](const config::Value& value, const fs::path& folder, const fs::path& from) {
+        visit_texts(value, [&](const std::string& text) {
+            visit({text, from.empty() ? text : (from / text).generic_string(), folder / text});
+        });
+    };
+    const fs::path folder = document.file.parent_path();
+    const std::string* name = base_of(document);
+    if (name == nullptr) return names_in(document.root, folder, place);
+    const Named base{*name, place.empty() ? *name : (place / *name).generic_string(), folder / *name};
+    visit(base);
+    const fs::path of_base = place / fs::path(*name).parent_path();
+    for (const auto& [key, value] : std::get<config::Table>(document.root.data)) {
+        if (key == "robot") continue;
+        if (key != "set") {
+            names_in(value, base.path.parent_path(), of_base);
+            continue;
+        }
+        visit_texts(value, [&](const std::string& assignment) {
+            names_in(config::assigned_value(assignment), base.path.parent_path(), of_base);
+        });
+    }
+    std::error_code ignored;
+    if (deepest == 0 || !may_read(base) || !fs::is_regular_file(base.path, ignored)) return;
+    if (const Result<config::Document> below = config::load(base.path))
+        visit_names(*below, of_base, deepest - 1, may_read, visit);
+}
+
+constexpr int most_bases = 8;  // of files that are based on each other, one after the other
 
 }  // namespace
 
@@ -98,40 +149,54 @@ std::vector<std::string> ProjectFolder::journals() const {
     return files;
 }
 
+bool ProjectFolder::leads_outside(const std::string& text, const fs::path& path) const {
+    const bool a_name = text.find('/') == std::string::npos && text != "..";
+    if (a_name && text.size() > longest_name) return false;  // too long for a file name
+    return !holds(path);
+}
+
 std::vector<std::string> ProjectFolder::texts_leading_outside(std::string_view toml, const fs::path& file) const {
     std::vector<std::string> outside;
     const Result<config::Document> document = config::parse(toml, file);
     if (!document) return outside;
-    visit_texts(document->root, [&](const std::string& text) {
-        const bool a_name = text.find('/') == std::string::npos && text != "..";
-        if (a_name && text.size() > longest_name) return;  // too long for a file name
-        if (!holds(file.parent_path() / text)) outside.push_back(text);
-    });
+    visit_names(
+        *document, {}, most_bases, [](const Named&) { return true; },
+        [&](const Named& named) {
+            if (leads_outside(named.text, named.path)) outside.push_back(named.shown);
+        });
     return outside;
 }
 
 Status ProjectFolder::check_texts(std::string_view toml, const fs::path& file,
                                   std::span<const std::string> known) const {
-    for (const std::string& text : texts_leading_outside(toml, file)) {
-        if (std::find(known.begin(), known.end(), text) != known.end()) continue;
-        return input_error("\"{}\" lies outside of the project folder {}", text, root_.string());
-    }
-    return {};
+    const Result<config::Document> document = config::parse(toml, file);
+    if (!document) return {};  // from which nothing is read
+    const auto is_allowed = [&](const Named& named) {
+        return std::find(known.begin(), known.end(), named.shown) != known.end() ||
+               !leads_outside(named.text, named.path);
+    };
+    std::string outside;
+    visit_names(*document, {}, most_bases, is_allowed, [&](const Named& named) {
+        if (outside.empty() && !is_allowed(named)) outside = named.shown;
+    });
+    if (outside.empty()) return {};
+    return input_error("\"{}\" lies outside of the project folder {}", outside, root_.string());
 }
 
 std::string ProjectFolder::stamps_of(std::string_view toml, const fs::path& file) const {
     std::string stamps;
     const Result<config::Document> document = config::parse(toml, file);
     if (!document) return stamps;
-    visit_texts(document->root, [&](const std::string& text) {
-        std::error_code error;
-        if (text.empty() || text.size() > longest_path) return;
-        const fs::path path = file.parent_path() / text;
-        if (!fs::is_regular_file(path, error)) return;
-        const auto size = fs::file_size(path, error);
-        const auto changed = fs::last_write_time(path, error).time_since_epoch().count();
-        if (!error) stamps += "\n" + text + " " + std::to_string(size) + " " + std::to_string(changed);
-    });
+    visit_names(
+        *document, {}, most_bases, [](const Named&) { return true; },
+        [&](const Named& named) {
+            std::error_code error;
+            if (named.text.empty() || named.text.size() > longest_path) return;
+            if (!fs::is_regular_file(named.path, error)) return;
+            const auto size = fs::file_size(named.path, error);
+            const auto changed = fs::last_write_time(named.path, error).time_since_epoch().count();
+            if (!error) stamps += "\n" + named.shown + " " + std::to_string(size) + " " + std::to_string(changed);
+        });
     return stamps;
 }
 

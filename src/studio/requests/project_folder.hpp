@@ -26,17 +26,21 @@ public:
     [[nodiscard]] std::vector<std::string> files() const;
     /// Journals of prints (.journal), listed likewise.
     [[nodiscard]] std::vector<std::string> journals() const;
-    /// The strings in a TOML document that, taken as paths beside `file`, lead outside: checked before any file that
-    /// the document names is read. Empty for an invalid document.
+    /// The strings in a robot file's text that, taken as paths, lead outside: checked before any file that it names is
+    /// read. Also those of the files on which it is based (robot = "FILE.toml") and of what it changes in them; such a
+    /// path is relative to the folder of that file, and is told as `file` would name it. Empty for an invalid document.
+    /// To be called with the user's own file only: the files on which it is based are read wherever they lie.
     [[nodiscard]] std::vector<std::string> texts_leading_outside(std::string_view toml,
                                                                  const std::filesystem::path& file) const;
-    /// Error: one of them is not among `known`, those that the user's own file named.
+    /// Error: one of them is not among `known`, those that the user's own file named. Reads nothing outside but those.
     [[nodiscard]] Status check_texts(std::string_view toml, const std::filesystem::path& file,
                                      std::span<const std::string> known = {}) const;
-    /// A fingerprint that changes when a file that the document, beside `file`, names changes: "" if it names none.
+    /// A fingerprint that changes when a file that the document, beside `file`, names changes, or one on which it is
+    /// based, or one that this names: "" if it names none. Call it with a checked document.
     [[nodiscard]] std::string stamps_of(std::string_view toml, const std::filesystem::path& file) const;
 
 private:
+    [[nodiscard]] bool leads_outside(const std::string& text, const std::filesystem::path& path) const;
     explicit ProjectFolder(std::filesystem::path root) : root_(std::move(root)) {}
     std::filesystem::path root_;  ///< canonical
 };

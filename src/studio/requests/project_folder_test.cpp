@@ -93,3 +93,59 @@ up = "..")";
     CHECK(folder->texts_leading_outside("x = \"" + std::string(5000, 'a') + "\"", place.project / "a.toml").empty());
     CHECK(folder->texts_leading_outside("not toml", place.project / "a.toml").empty());
 }
+
+TEST_CASE("what a robot changes of the one that it is based on cannot lead outside either") {
+    const Place place;
+    const auto folder = ProjectFolder::open(place.project);
+    REQUIRE(folder);
+    std::ofstream(place.project / "parts" / "base.toml") << "[body]\ngeometry = \"b.stl\"\n";
+    std::ofstream(place.project / "parts" / "bad.toml") << "[body]\ngeometry = \"../../project_secret/s.toml\"\n";
+    std::ofstream(place.project / "parts" / "second.toml") << "robot = \"bad.toml\"\n";
+    std::ofstream(place.base / "own.toml") << "[body]\ngeometry = \"own.stl\"\n";
+    const fs::path file = place.project / "a.toml";
+    const auto based = [](const std::string& robot, const std::string& set = "") {
+        return "robot = \"" + robot + "\"\nset = [" + set + "]\n";
+    };
+    const auto why = [&](const std::string& toml) {
+        const auto status = folder->check_texts(toml, file);
+        return status ? "" : status.error().message.substr(0, status.error().message.find(" lies"));
+    };
+    CHECK(why(based("parts/base.toml")) == "");
+    CHECK(why(based("parts/base.toml", R"('body.geometry="c.stl"', 'program.steps=3', 'mesh.size=2 mm')")) == "");
+    CHECK(why(based("parts/base.toml", R"('body.geometry="../c.stl"')")) == "");  // beside the base: in the folder
+    CHECK(why(based("parts/base.toml", R"('body.geometry="/etc/passwd"')")) == "\"/etc/passwd\"");
+    CHECK(why(based("parts/base.toml", R"('body.geometry=/etc/passwd')")) == "\"/etc/passwd\"");
+    CHECK(why(based("parts/base.toml", R"('body={ geometry = [{ step = "/etc/passwd" }] }')")) == "\"/etc/passwd\"");
+    CHECK(why(based("parts/base.toml", R"('body.geometry="../../own.stl"')")) == "\"parts/../../own.stl\"");
+    CHECK(why(based("none.toml", R"('body.geometry="/etc/passwd"')")) == "\"/etc/passwd\"");
+    CHECK(why(based("parts/bad.toml")) == "\"parts/../../project_secret/s.toml\"");
+    CHECK(why(based("parts/second.toml")) == "\"parts/../../project_secret/s.toml\"");
+    CHECK(why("robot = \"parts/base.toml\"\nprogram.file = \"../../own.stl\"\n") == "\"parts/../../own.stl\"");
+    CHECK(why(based("../own.toml")) == "\"../own.toml\"");
+    CHECK(why("robot = \"a.toml\"\n") == "");
+    // What the user's own file is based on is known, with the files that it names.
+    const std::vector<std::string> own = folder->texts_leading_outside(based("../own.toml"), file);
+    CHECK(own == std::vector<std::string>{"../own.toml", "../own.stl"});
+    CHECK(folder->check_texts(based("../own.toml"), file, own));
+    CHECK_FALSE(folder->check_texts(based("../own.toml", R"('body.geometry="other.stl"')"), file, own));
+}
+
+TEST_CASE("a fingerprint changes with the geometry of a robot that another one is based on") {
+    const Place place;
+    const auto folder = ProjectFolder::open(place.project);
+    REQUIRE(folder);
+    const fs::path file = place.project / "a.toml";
+    std::ofstream(place.project / "parts" / "base.toml") << "[body]\ngeometry = \"b.stl\"\n";
+    std::ofstream(place.project / "parts" / "b.stl") << "one";
+    const std::string toml = "robot = \"parts/base.toml\"\nset = ['body.geometry=\"c.stl\"']\n";
+    const std::string first = folder->stamps_of(toml, file);
+    std::ofstream(place.project / "parts" / "b.stl") << "another";
+    const std::string second = folder->stamps_of(toml, file);
+    CHECK(second != first);
+    std::ofstream(place.project / "parts" / "c.stl") << "new";
+    const std::string third = folder->stamps_of(toml, file);
+    CHECK(third != second);
+    std::ofstream(place.project / "parts" / "base.toml", std::ios::app) << "# longer\n";
+    CHECK(folder->stamps_of(toml, file) != third);
+    CHECK(folder->stamps_of("name = \"b.stl\"", file).empty());
+}

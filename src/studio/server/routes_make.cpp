@@ -163,9 +163,11 @@ Result<SliceOrder> read_order(Studio& studio, const Request& request) {
     if (*own) {
         d.text = **own;
         d.file = studio.folder().path() / "test.toml";
-        if (!studio.folder().texts_leading_outside(d.text, d.file).empty())
-            return input_error("robot: names a file outside of the project folder");
+        d.outside.clear();
     }
+    // A file on which the robot is based may have changed since the robot was opened.
+    if (Status inside = studio.folder().check_texts(d.text, d.file, d.outside); !inside)
+        return input_error("robot: {}", inside.error().message);
     order->inputs = {d.file.filename().string()};
     std::string source = *own ? "" : dumped({{"robot", d.digest()}, {"order", parse_json(request.body)}});
     return SliceOrder{d.text, d.file, std::move(*printer), std::move(*order), std::move(source)};

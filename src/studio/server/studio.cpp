@@ -120,6 +120,12 @@ Studio::Document Studio::document() {
 void Studio::rebuild(After after) {
     if (after == After::from_rest) ++opened_;
     document_.opened = opened_;
+    // A text that was checked when it came may lead outside since a file on which it is based has changed.
+    if (const Status inside = check_text(document_.text); !inside) {
+        hub_.send_text(dumped({{"type", "error"}, {"error", inside.error().message}}));
+        hub_.send_text(document_event(document_));
+        return;
+    }
     document_.stamps = folder_.stamps_of(document_.text, document_.file);
     simulation_->open({document_.file, document_.text, document_.accuracy}, after);
     hub_.send_text(document_event(document_));
@@ -246,6 +252,7 @@ void Studio::set_accuracy(Accuracy accuracy) {
     rebuild(After::as_before);
     if (!beside_) return;
     text_beside_.accuracy = accuracy;
+    if (!folder_.check_texts(text_beside_.text, text_beside_.file, outside_beside_)) return;
     beside_->open(text_beside_, After::as_before);
 }
 
@@ -259,6 +266,7 @@ SessionEvents Studio::events_beside() {
 Status Studio::compare(const std::string& name, const std::string& example) {
     RobotText source;
     std::string title = name.empty() ? example : name;
+    std::vector<std::string> outside;
     if (!example.empty()) {
         const BuiltInFile* found = find_file(example_robots(), example);
         if (found == nullptr) return input_error("\"{}\": there is no such example", example);
@@ -280,9 +288,11 @@ Status Studio::compare(const std::string& name, const std::string& example) {
         if (title.empty()) {
             source = {document_.file, document_.text};
             title = "as it was";
+            outside = document_.outside;
         }
         source.accuracy = document_.accuracy;
         text_beside_ = source;
+        outside_beside_ = std::move(outside);
         title_beside_ = title;
         before = std::exchange(beside_, session);
     }

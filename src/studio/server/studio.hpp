@@ -133,6 +133,7 @@ private:
     Document document_;
     int opened_ = 0;  ///< see Document::opened
     RobotText text_beside_;
+    std::vector<std::string> outside_beside_;    ///< see Document::outside
     std::string title_beside_;                   ///< file that the second robot was opened from
     std::shared_ptr<SimulationSession> beside_;  ///< null: no second robot
 };

@@ -419,6 +419,27 @@ TEST_CASE("jobs are jobs whatever the case of their ending") {
     CHECK(studio.handle(picture).status == 200);
 }
 
+TEST_CASE("a robot that is based on another cannot read files outside the folder either") {
+    const Project project;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
+    const auto answers = [&](const std::string& outside) {
+        const std::string text = "robot = \"bar.toml\"\nset = [\"body.bar.geometry=\\\"" + outside + "\\\"\"]\n";
+        const Json order = {{"printer", "tower"}, {"robot", text}};
+        const Response edited = ask(studio, "PUT", "/api/robot", text);
+        CHECK(edited.status == 422);
+        std::string all = edited.body + ask(studio, "POST", "/api/robot/check", text).body +
+                          ask(studio, "POST", "/api/job/estimate", order.dump()).body +
+                          ask(studio, "POST", "/api/job/slice", order.dump()).body;
+        for (std::size_t at = 0; (at = all.find(outside)) != std::string::npos;) all.erase(at, outside.size());
+        return all;
+    };
+    const std::string there = answers((project.base / "outside.stl").string());
+    CHECK(holds(there, "lies outside of the project folder"));
+    CHECK(there == answers((project.base / "not_there.stl").string()));  // nobody learns which files there are
+    CHECK(studio.document().text == project_bar);
+}
+
 TEST_CASE("a page that is not in control cannot change anything") {
     const auto owner = opened();
     Studio& studio = *owner;
