@@ -11,6 +11,7 @@ import { Print } from './print/print';
 import { Enlarged } from './print/enlarged';
 import { info } from './print/state';
 import './print/tell';
+import { SaveQuestion } from './simulate/save_robot';
 import { Simulate } from './simulate/simulate';
 import { GeometryDrop, PickGeometry } from './simulate/geometry';
 import { templates } from './simulate/templates';
@@ -196,6 +197,7 @@ export function App() {
       <Enlarged />
       <GeometryDrop />
       <DiscardQuestion />
+      <SaveQuestion />
       {notice.value && (
         <div class="notice" role="alert" data-testid="notice">
           {notice.value}

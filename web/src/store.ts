@@ -95,13 +95,20 @@ export function wantFields(names: string[]) {
   send({ type: 'fields', names });
 }
 
+/// What api() throws if the studio refuses a request.
+export interface Refusal extends Error {
+  changed?: boolean; // a file was changed elsewhere
+}
+
 export async function api(path: string, options: RequestInit = {}): Promise<Response> {
   const response = await fetch(path, { ...options, headers: { ...options.headers, 'X-Pliant-Page': page } }).catch(() => {
     throw new Error('The studio does not respond. Is it still running, and is this computer still connected to it?');
   });
   if (!response.ok) {
-    const body = (await response.json().catch(() => ({}))) as { error?: string };
-    throw new Error(body.error ?? `the studio answered ${response.status}`);
+    const body = (await response.json().catch(() => ({}))) as { error?: string; changed?: boolean };
+    const refusal: Refusal = new Error(body.error ?? `the studio answered ${response.status}`);
+    refusal.changed = body.changed === true;
+    throw refusal;
   }
   return response;
 }

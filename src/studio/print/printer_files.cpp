@@ -1,5 +1,6 @@
 #include "studio/print/printer_files.hpp"
 
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
@@ -19,6 +20,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uintmax_t largest_file = 4 << 20;
+
+/// Of two changes of a file at once the later one begins with what the former has written.
+std::mutex one_change_at_a_time;
 
 Json axes_json(const machine::Printer& p) {
     Json axes = Json::array();
@@ -59,7 +63,7 @@ Result<std::pair<std::string, std::filesystem::path>> text_of(const ProjectFolde
     if (!path) return tl::unexpected(path.error());
     Result<std::string> text = read_file(*path, largest_file);
     if (!text) return tl::unexpected(text.error());
-    if (!folder.texts_leading_outside(*text, *path).empty())
+    if (!folder.check_texts(*text, *path))
         return input_error("{}: names a file outside of the project folder", name);
     return std::pair(std::move(*text), *path);
 }
@@ -102,6 +106,7 @@ Result<prepare::PrinterFile> read_printer(const ProjectFolder& folder, const std
 }
 
 Status new_printer(const ProjectFolder& folder, const std::string& from, const std::string& name) {
+    const std::lock_guard lock(one_change_at_a_time);
     const auto path = own_file(folder, name);
     if (!path) return tl::unexpected(path.error());
     std::error_code ignored;
@@ -114,6 +119,7 @@ Status new_printer(const ProjectFolder& folder, const std::string& from, const s
 }
 
 Status change_printer(const ProjectFolder& folder, const std::string& name, const PrinterChanges& changes) {
+    const std::lock_guard lock(one_change_at_a_time);
     const auto path = own_file(folder, name);
     if (!path) return tl::unexpected(path.error());
     const auto text = text_of(folder, name);
@@ -126,7 +132,7 @@ Status change_printer(const ProjectFolder& folder, const std::string& name, cons
     }
     if (const auto printer = machine::parse_printer(next, path->filename()); !printer)
         return tl::unexpected(printer.error());
-    if (!folder.texts_leading_outside(next, *path).empty())
+    if (!folder.check_texts(next, *path))
         return input_error("{}: names a file outside of the project folder", name);
     return write_file(*path, next);
 }

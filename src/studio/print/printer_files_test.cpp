@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "base/core/files.hpp"
 #include "base/core/test_folder.hpp"
@@ -40,6 +41,21 @@ TEST_CASE("a new printer file is a copy of a built-in one, and overwrites nothin
     CHECK(holds(new_printer(b.folder, "tower", "tower").error().message, "is built in"));
     CHECK_FALSE(new_printer(b.folder, "no_such.toml", "other.toml").has_value());
     REQUIRE(new_printer(b.folder, "mine.toml", "second.toml").has_value());
+}
+
+TEST_CASE("changes of a printer file that come at once are all made") {
+    const PrinterBench b;
+    REQUIRE(new_printer(b.folder, "tower", "mine.toml").has_value());
+    const std::vector<std::pair<std::string, std::string>> changes = {{"name", "\"our tower\""},
+                                                                      {"projector.pixel", "\"49.3 um\""},
+                                                                      {"resin.semi-flex.exposure", "\"2.75 s\""},
+                                                                      {"controller.baud_rate", "250000"}};
+    std::vector<std::thread> pages;
+    for (const auto& change : changes)
+        pages.emplace_back([&b, &change] { (void)change_printer(b.folder, "mine.toml", {change}); });
+    for (std::thread& page : pages) page.join();
+    const std::string text = b.text("mine.toml");
+    for (const auto& [key, value] : changes) CHECK(holds(text, value));
 }
 
 TEST_CASE("values of a printer file change in place, and everything else stays as written") {

@@ -1,10 +1,15 @@
 #include "studio/server/request_reading.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "base/core/json.hpp"
+#include "base/core/letters.hpp"
+#include "base/core/text.hpp"
 #include "printing/screen/projector.hpp"
 #include "studio/base/limits.hpp"
 #include "studio/requests/project_folder.hpp"
@@ -12,6 +17,54 @@
 namespace pliant::studio {
 
 using Json = nlohmann::json;
+
+namespace {
+
+bool is_of_kind(const Json& value, BodyKey::Kind kind) {
+    switch (kind) {
+        case BodyKey::Kind::text:
+            return value.is_string();
+        case BodyKey::Kind::number:
+            return value.is_number();
+        case BodyKey::Kind::flag:
+            return value.is_boolean();
+        default:
+            return true;
+    }
+}
+
+std::string_view words_for(BodyKey::Kind kind) {
+    switch (kind) {
+        case BodyKey::Kind::text:
+            return "a text";
+        case BodyKey::Kind::number:
+            return "a number";
+        case BodyKey::Kind::flag:
+            return "true or false";
+        default:
+            return "a value";
+    }
+}
+
+}  // namespace
+
+Status check_body(const Request& request, std::initializer_list<BodyKey> keys) {
+    const Json parsed = parse_json(request.body);
+    const Json body = parsed.is_object() ? parsed : Json::object();
+    for (const auto& given : body.items()) {
+        const std::string& name = given.key();
+        if (std::ranges::any_of(keys, [&](const BodyKey& key) { return key.name == name; })) continue;
+        std::vector<std::string> names;
+        for (const BodyKey& key : keys) names.emplace_back(key.name);
+        return input_error("{}: there is no such key; this request takes {}", one_line(name), join_names(names));
+    }
+    for (const BodyKey& key : keys) {
+        const auto found = body.find(key.name);
+        if (found == body.end() ? key.required : !is_of_kind(*found, key.kind))
+            return input_error("{}: {} is needed", key.name, words_for(key.kind));
+    }
+    return {};
+}
 
 std::string asked_for(const Request& request, const char* key, const char* otherwise) {
     const auto found = request.query.find(key);

@@ -1,6 +1,7 @@
 // What routes read from requests: queries, and values of JSON bodies.
 #pragma once
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -13,6 +14,17 @@ class ProjectFolder;
 
 /// The value of ?key= ; `otherwise` if it is missing.
 [[nodiscard]] std::string asked_for(const Request& request, const char* key, const char* otherwise = "");
+
+/// A key that the JSON body of a request may have, or must.
+struct BodyKey {
+    enum class Kind { text, number, flag, any };
+    const char* name;
+    Kind kind = Kind::text;
+    bool required = false;
+};
+/// Errors, which name the key: one of the body that is not among these, a value of another kind, a required one that is
+/// missing. An empty body has no keys.
+[[nodiscard]] Status check_body(const Request& request, std::initializer_list<BodyKey> keys);
 
 /// The text under `key`; "" if there is none.
 [[nodiscard]] std::string text_at(const nlohmann::json& json, const char* key);

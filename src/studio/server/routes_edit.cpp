@@ -18,28 +18,36 @@ namespace {
 using Json = nlohmann::json;
 
 Response set_values(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"changes", BodyKey::Kind::any}}); !known)
+        return error_response(known.error());
     const Json json = parse_json(request.body);
     if (Status list = check_changes(json); !list) return error_response(list.error());
-    std::string text = studio.document().text;
     for (const Json& change : json["changes"]) {
         if (!change.is_object() || !change.contains("key") || !change["key"].is_string() || !change.contains("value"))
             return error_response(422, "changes: key and value of each are needed");
-        auto next = config::with_value(text, change["key"].get<std::string>(), toml_text(change["value"]));
-        if (!next) return error_response(next.error());
-        text = std::move(*next);
     }
-    return done(studio.edit(text));
+    return done(studio.edit_by([&](const std::string& text) {
+        Result<std::string> next = text;
+        for (const Json& change : json["changes"]) {
+            next = config::with_value(*next, change["key"].get<std::string>(), toml_text(change["value"]));
+            if (!next) break;
+        }
+        return next;
+    }));
 }
 
 Response add_entry(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"list"}, {"entry", BodyKey::Kind::any}}); !known)
+        return error_response(known.error());
     const auto json = parse_ordered_json(request.body);
     if (!json.is_object() || !json.contains("list") || !json["list"].is_string() || !json.contains("entry") ||
         !json["entry"].is_object() || json["entry"].empty())
         return error_response(422, "list and entry are needed: its keys and their values");
     config::EntryText entry;
     for (const auto& [key, value] : json["entry"].items()) entry.emplace_back(key, toml_text(Json(value)));
-    const auto text = config::with_entry(studio.document().text, json["list"].get<std::string>(), entry);
-    return text ? done(studio.edit(*text)) : error_response(text.error());
+    return done(studio.edit_by([&](const std::string& text) {
+        return config::with_entry(text, json["list"].get<std::string>(), entry);
+    }));
 }
 
 Response open_new(Studio& studio, const Request& request) {

@@ -116,6 +116,7 @@ Response download(Studio& studio, const Request&) {
 }
 
 Response save(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"name"}}); !known) return error_response(known.error());
     const Result<std::filesystem::path> path = studio.folder().resolve(body_text(request, "name"));
     if (!path) return error_response(path.error());
     if (lower_extension(*path) != ".zip") return error_response(422, "a job file ends with .zip");

@@ -21,6 +21,8 @@ double speed_of(const Request& request) {
 }
 
 Response take_twin(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"speed", BodyKey::Kind::number}}); !known)
+        return error_response(known.error());
     const auto job = studio.make().job();
     if (!job) return error_response(404, no_job_text);
     // A job that was never saved has no place for a journal either.
@@ -33,6 +35,10 @@ Response take_twin(Studio& studio, const Request& request) {
 
 /// Device and projector as for `pliant print`; a projector folder is created in the project.
 Response take_port(Studio& studio, const Request& request) {
+    if (Status known =
+            check_body(request, {{"device"}, {"projector"}, {"speed", BodyKey::Kind::number}, {"clock"}});
+        !known)
+        return error_response(known.error());
     const auto job = studio.make().job();
     if (!job) return error_response(404, no_job_text);
     if (!studio.folder().holds(job->file))
@@ -89,7 +95,15 @@ Response report_page(Studio& studio, const Request& request) {
     return {200, "text/html; charset=utf-8", std::move(*page), "print_report.html"};
 }
 
+Response set_speed(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"speed", BodyKey::Kind::number, true}}); !known)
+        return error_response(known.error());
+    return done(studio.print().set_speed(speed_of(request)));
+}
+
 Response set_door(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"open", BodyKey::Kind::flag}}); !known)
+        return error_response(known.error());
     const Json json = parse_json(request.body);
     if (!json.is_object() || !json.contains("open") || !json["open"].is_boolean())
         return error_response(422, "{\"open\": true or false} is needed");
@@ -127,6 +141,8 @@ void leave_queue(Studio& studio, const std::string& body) {
 }
 
 Response set_queue(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"jobs", BodyKey::Kind::any}}); !known)
+        return error_response(known.error());
     const Json json = parse_json(request.body);
     const auto is_text = [](const Json& name) { return name.is_string(); };
     if (!json.is_object() || !json.contains("jobs") || !json["jobs"].is_array() ||
@@ -169,7 +185,7 @@ void add_print_routes(std::vector<Route>& routes) {
                       "HTML report of the current print, or of a journal of the folder: ?name=", "text/html", false,
                       report_page});
     routes.push_back({"POST", "/api/print/speed", "sets the {\"speed\"} of the virtual printer", json, true,
-                      [](Studio& s, const Request& r) { return done(s.print().set_speed(speed_of(r))); }, json});
+                      set_speed, json});
     routes.push_back({"POST", "/api/print/leave", "disconnects the machine", json, true,
                       [](Studio& s, const Request&) { return done(s.print().give_back()); }});
     routes.push_back({"POST", "/api/print/discard", "ends an interrupted print on the virtual printer for good", json,

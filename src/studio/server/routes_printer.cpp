@@ -38,11 +38,14 @@ Response text(Studio& studio, const Request& request) {
 }
 
 Response make(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"from"}, {"name"}}); !known) return error_response(known.error());
     const Json json = parse_json(request.body);
     return done(new_printer(studio.folder(), text_at(json, "from"), text_at(json, "name")));
 }
 
 Response change(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"name"}, {"changes", BodyKey::Kind::any}}); !known)
+        return error_response(known.error());
     const Json json = parse_json(request.body);
     if (Status list = check_changes(json); !list) return error_response(list.error());
     PrinterChanges changes;
@@ -56,6 +59,8 @@ Response change(Studio& studio, const Request& request) {
 
 /// Queries the board at a port. Nothing moves: only questions are asked. Refused while a machine is connected.
 Response probe(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"name"}, {"device"}, {"baud_rate", BodyKey::Kind::number}}); !known)
+        return error_response(known.error());
     const Json json = parse_json(request.body);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));
     if (!file) return error_response(file.error());
@@ -70,6 +75,10 @@ Response probe(Studio& studio, const Request& request) {
 }
 
 Response show_pattern(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"name"}, {"projector"}, {"pattern"}, {"square", BodyKey::Kind::number},
+                                           {"seconds", BodyKey::Kind::number}});
+        !known)
+        return error_response(known.error());
     const Json json = parse_json(request.body);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));
     if (!file) return error_response(file.error());
@@ -92,6 +101,10 @@ Response test_pattern(Studio& studio, const Request& request) {
 
 /// Converts distances measured on the pattern "border" to the pixel size.
 Response measured(Studio& studio, const Request& request) {
+    if (Status known =
+            check_body(request, {{"name"}, {"x_mm", BodyKey::Kind::number}, {"y_mm", BodyKey::Kind::number}});
+        !known)
+        return error_response(known.error());
     const Json json = parse_json(request.body);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));
     if (!file) return error_response(file.error());

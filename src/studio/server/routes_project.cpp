@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "studio/base/dumped.hpp"
 #include "studio/built_in/examples.hpp"
 #include "studio/server/request_reading.hpp"
@@ -39,7 +40,21 @@ Response robot_text(Studio& studio, const Request&) {
     return {200, "text/plain; charset=utf-8", studio.document().text};
 }
 
+Response save_robot(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"name"}, {"overwrite", BodyKey::Kind::flag}}); !known)
+        return error_response(known.error());
+    const Json json = parse_json(request.body);
+    const bool overwrite = json.is_object() && json.value("overwrite", false);
+    const Result<Studio::Saved> saved = studio.save(text_at(json, "name"), overwrite);
+    if (!saved) return error_response(saved.error());
+    if (*saved == Studio::Saved::done) return json_response("{}");
+    const std::string name = studio.document().name;
+    const std::string why = name + " has been changed elsewhere since it was opened here; nothing was written";
+    return {409, "application/json", dumped({{"error", why}, {"changed", true}})};
+}
+
 Response set_accuracy(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"accuracy"}}); !known) return error_response(known.error());
     const std::optional<Accuracy> accuracy = accuracy_named(body_text(request, "accuracy"));
     if (!accuracy) return error_response(422, R"(accuracy: "preview", "automatic" or "fine" is needed)");
     studio.set_accuracy(*accuracy);
@@ -47,12 +62,14 @@ Response set_accuracy(Studio& studio, const Request& request) {
 }
 
 Response open_file(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"name"}}); !known) return error_response(known.error());
     const std::string name = body_text(request, "name");
     if (name.empty()) return error_response(422, "name: the name of a file is needed");
     return done(studio.open_file(name));
 }
 
 Response open_example(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"name"}}); !known) return error_response(known.error());
     const std::string name = body_text(request, "name");
     if (find_file(example_robots(), name) == nullptr) return error_response(404, "there is no such example");
     studio.open_example(name);
@@ -60,6 +77,7 @@ Response open_example(Studio& studio, const Request& request) {
 }
 
 Response compare(Studio& studio, const Request& request) {
+    if (Status known = check_body(request, {{"name"}, {"example"}}); !known) return error_response(known.error());
     return done(studio.compare(body_text(request, "name"), body_text(request, "example")));
 }
 
@@ -89,8 +107,10 @@ void add_project_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request&) { return done(s.undo()); }});
     routes.push_back({"POST", "/api/robot/redo", "the change that was undone", json, true,
                       [](Studio& s, const Request&) { return done(s.redo()); }});
-    routes.push_back({"POST", "/api/robot/save", "writes the robot file; {\"name\"} for a new one", json, true,
-                      [](Studio& s, const Request& r) { return done(s.save(body_text(r, "name"))); }, json});
+    routes.push_back({"POST", "/api/robot/save",
+                      "writes the robot file; {\"name\"} for a new one; 409 with \"changed\" if the file was changed "
+                      "elsewhere, unless {\"overwrite\": true}",
+                      json, true, save_robot, json});
     routes.push_back(
         {"POST", "/api/open", "opens {\"name\"}, a robot file or job of the folder", json, true, open_file, json});
     routes.push_back(

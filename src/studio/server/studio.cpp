@@ -139,6 +139,16 @@ Status Studio::check_text(const std::string& text) const {
 
 Status Studio::edit(const std::string& text) {
     const std::lock_guard lock(mutex_);
+    return replace(text);
+}
+
+Status Studio::edit_by(const std::function<Result<std::string>(const std::string&)>& change) {
+    const std::lock_guard lock(mutex_);
+    const Result<std::string> text = change(document_.text);
+    return text ? replace(*text) : tl::unexpected(text.error());
+}
+
+Status Studio::replace(const std::string& text) {
     if (Status status = check_text(text); !status) return status;
     if (text != document_.text) {
         document_.undo.push_back(document_.text);
@@ -182,7 +192,7 @@ Status Studio::redo() {
     return {};
 }
 
-Status Studio::save(const std::string& name) {
+Result<Studio::Saved> Studio::save(const std::string& name, bool overwrite) {
     const std::lock_guard lock(mutex_);
     const Result<std::filesystem::path> path = folder_.resolve(name.empty() ? document_.name : name);
     if (!path) return tl::unexpected(path.error());
@@ -190,14 +200,25 @@ Status Studio::save(const std::string& name) {
     std::error_code ignored;
     // An example or a new robot has a place in the folder, where another file may be.
     const bool is_its_own = !document_.name.empty() && *path == document_.file;
-    if (!is_its_own && std::filesystem::exists(*path, ignored))
-        return input_error("\"{}\" exists; choose another name", name);
-    if (Status status = write_file(*path, document_.text); !status) return status;
+    const bool exists = std::filesystem::exists(*path, ignored);
+    if (!is_its_own && exists) return input_error("\"{}\" exists; choose another name", name);
+    if (is_its_own && exists && !overwrite) {
+        const Result<std::string> there = read_file(*path, largest_robot);
+        if (!there || *there != document_.saved) return Saved::changed_elsewhere;
+    }
+    // In another folder the same names are those of other files.
+    std::vector<std::string> outside = document_.outside;
+    if (path->parent_path() != document_.file.parent_path())
+        std::erase_if(outside, [](const std::string& text) { return std::filesystem::path(text).is_relative(); });
+    if (Status inside = folder_.check_texts(document_.text, *path, outside); !inside)
+        return tl::unexpected(inside.error());
+    if (Status status = write_file(*path, document_.text); !status) return tl::unexpected(status.error());
     document_.name = path->lexically_relative(folder_.path()).generic_string();
     document_.file = *path;
     document_.saved = document_.text;
+    document_.outside = std::move(outside);
     hub_.send_text(document_event(document_));
-    return {};
+    return Saved::done;
 }
 
 Status Studio::open_file(const std::string& name) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -82,15 +83,21 @@ public:
         [[nodiscard]] std::string digest() const;
     };
     [[nodiscard]] Document document();
-    /// Checks and builds the new text. `because` tells the pages the cause of the change.
+    /// Checks and builds the new text.
     [[nodiscard]] Status edit(const std::string& text);
+    /// The same with what `change` makes of the present text, which nobody else changes meanwhile.
+    [[nodiscard]] Status edit_by(const std::function<Result<std::string>(const std::string& text)>& change);
     /// Builds the robot again if a file that it names is not the one that it was built from.
     void look_at_files();
     /// The errors of a text, without building it.
     [[nodiscard]] Status check(const std::string& text);
     [[nodiscard]] Status undo();
     [[nodiscard]] Status redo();
-    [[nodiscard]] Status save(const std::string& name);
+    enum class Saved { done, changed_elsewhere };
+    /// Under another name, or "": that of its file, unless that holds anything else than what was opened or saved last
+    /// (changed_elsewhere: nothing is written) and `overwrite` is false. Errors: another file has that name, the name
+    /// does not end with .toml, it cannot be written, the robot names files that lie outside as seen from there.
+    [[nodiscard]] Result<Saved> save(const std::string& name, bool overwrite = false);
     [[nodiscard]] Status open_file(const std::string& name);
     void open_example(const std::string& name);
     /// Opens a robot that has no file yet; `name`: of the file that its text came from, "" if none. Errors: as for
@@ -110,6 +117,7 @@ private:
     Studio(ProjectFolder folder, Start start);
     [[nodiscard]] Status start(const std::filesystem::path& file);
     [[nodiscard]] Status check_text(const std::string& text) const;
+    [[nodiscard]] Status replace(const std::string& text);
     /// Undo or redo: restores the last text of `from`; the current one is appended to `to`.
     void take_back(std::vector<std::string>& from, std::vector<std::string>& to);
     void rebuild(After after);

@@ -372,6 +372,78 @@ TEST_CASE("a robot text from the page cannot read files outside the folder") {
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"/etc/passwd"})").status == 422);
 }
 
+TEST_CASE("a robot that is based on another cannot read files outside the folder either") {
+    const Project project;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
+    const auto answers = [&](const std::string& outside) {
+        const std::string text = "robot = \"bar.toml\"\nset = [\"body.bar.geometry=\\\"" + outside + "\\\"\"]\n";
+        const Json order = {{"printer", "tower"}, {"robot", text}};
+        const Response edited = ask(studio, "PUT", "/api/robot", text);
+        CHECK(edited.status == 422);
+        std::string all = edited.body + ask(studio, "POST", "/api/robot/check", text).body +
+                          ask(studio, "POST", "/api/job/estimate", order.dump()).body +
+                          ask(studio, "POST", "/api/job/slice", order.dump()).body;
+        for (std::size_t at = 0; (at = all.find(outside)) != std::string::npos;) all.erase(at, outside.size());
+        return all;
+    };
+    const std::string there = answers((project.base / "outside.stl").string());
+    CHECK(holds(there, "lies outside of the project folder"));
+    CHECK(there == answers((project.base / "not_there.stl").string()));  // nobody learns which files there are
+    CHECK(studio.document().text == project_bar);
+}
+
+TEST_CASE("a text that leads outside since its base has changed is not built, and in another folder not saved") {
+    const Project project;
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
+    fs::create_directories(project.base / "project" / "parts");
+    std::ofstream(project.base / "project" / "parts" / "base.toml") << project_bar;
+    const std::string text = "robot = \"base.toml\"\nset = ['mesh.file=\"../outside.stl\"']\n";
+    std::ofstream(project.base / "project" / "parts" / "own.toml") << text;
+    REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"parts/own.toml"})", "first_page").status == 200);
+    const Response moved = ask(studio, "POST", "/api/robot/save", R"({"name":"own.toml"})", "first_page");
+    CHECK(moved.status == 422);
+    CHECK(holds(moved.body, "lies outside"));
+    CHECK_FALSE(fs::exists(project.base / "project" / "own.toml"));
+
+    const std::string based = "robot = \"parts/base.toml\"\n";
+    std::ofstream(project.base / "project" / "based.toml") << based;
+    REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"based.toml"})", "first_page").status == 200);
+    REQUIRE(studio.simulation().wait_until_built());
+    std::ofstream(project.base / "project" / "parts" / "base.toml", std::ios::app) << "surface = \"../../x.stl\"\n";
+    studio.look_at_files();
+    while (!holds(next_error(page)["error"].get<std::string>(), "lies outside")) {
+    }
+    CHECK(ask(studio, "POST", "/api/job/slice", R"({"printer":"tower"})", "first_page").status == 422);
+}
+
+TEST_CASE("a file that was changed elsewhere is not saved over unasked") {
+    const Project project;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
+    const fs::path file = project.base / "project" / "bar.toml";
+    const std::string mine = std::string(project_bar) + "# mine\n", theirs = std::string(project_bar) + "# theirs\n";
+    REQUIRE(studio.edit(mine));
+    REQUIRE(write_file(file, theirs));
+    for (const char* body : {"{}", R"({"name":"bar.toml"})", R"({"overwrite":false})"}) {
+        const Response answer = ask(studio, "POST", "/api/robot/save", body);
+        CHECK(answer.status == 409);
+        CHECK(Json::parse(answer.body)["changed"] == true);
+        CHECK(holds(answer.body, "bar.toml has been changed elsewhere"));
+    }
+    CHECK(file_text(file) == theirs);
+    REQUIRE(ask(studio, "POST", "/api/robot/save", R"({"overwrite":true})").status == 200);
+    CHECK(file_text(file) == mine);
+    REQUIRE(studio.undo());
+    CHECK(ask(studio, "POST", "/api/robot/save", "{}").status == 200);
+    fs::remove(file);
+    REQUIRE(studio.redo());
+    CHECK(ask(studio, "POST", "/api/robot/save", "{}").status == 200);
+    CHECK(file_text(file) == mine);
+}
+
 TEST_CASE("a job whose file has changed is not printed, saved or shown as the one that was opened") {
     const Project project;
     const auto owner = opened(project);
@@ -417,27 +489,6 @@ TEST_CASE("jobs are jobs whatever the case of their ending") {
     Request picture{"GET", "/api/thumbnail"};
     picture.query["file"] = "BAR.ZIP";
     CHECK(studio.handle(picture).status == 200);
-}
-
-TEST_CASE("a robot that is based on another cannot read files outside the folder either") {
-    const Project project;
-    const auto owner = opened(project);
-    Studio& studio = *owner;
-    const auto answers = [&](const std::string& outside) {
-        const std::string text = "robot = \"bar.toml\"\nset = [\"body.bar.geometry=\\\"" + outside + "\\\"\"]\n";
-        const Json order = {{"printer", "tower"}, {"robot", text}};
-        const Response edited = ask(studio, "PUT", "/api/robot", text);
-        CHECK(edited.status == 422);
-        std::string all = edited.body + ask(studio, "POST", "/api/robot/check", text).body +
-                          ask(studio, "POST", "/api/job/estimate", order.dump()).body +
-                          ask(studio, "POST", "/api/job/slice", order.dump()).body;
-        for (std::size_t at = 0; (at = all.find(outside)) != std::string::npos;) all.erase(at, outside.size());
-        return all;
-    };
-    const std::string there = answers((project.base / "outside.stl").string());
-    CHECK(holds(there, "lies outside of the project folder"));
-    CHECK(there == answers((project.base / "not_there.stl").string()));  // nobody learns which files there are
-    CHECK(studio.document().text == project_bar);
 }
 
 TEST_CASE("a page that is not in control cannot change anything") {
@@ -765,6 +816,51 @@ TEST_CASE("values and entries of the robot file change by request, and a text ca
     CHECK(Json::parse(studio->handle({"GET", "/api/materials"}).body).size() > 10);
     CHECK(post("/api/robot/new", project_bar).status == 200);
     CHECK(studio->document().name.empty());
+}
+
+TEST_CASE("changes of the robot that come at once are all made") {
+    const Project project;
+    const auto studio = opened(project);
+    constexpr int many = 8;
+    std::vector<std::thread> pages;
+    for (int k = 0; k < many; ++k) {
+        pages.emplace_back([&, k] {
+            const std::string name = "m" + std::to_string(k);
+            const Json added = {{"list", "marker"}, {"entry", {{"name", name}, {"point", Json::array({k, 5, 5})}}}};
+            (void)ask(*studio, "POST", "/api/robot/add", added.dump());
+            const Json change = {{"key", "marker." + name + ".point"}, {"value", Json::array({k, 6, 5})}};
+            const Json set = {{"changes", Json::array({change})}};
+            (void)ask(*studio, "POST", "/api/robot/set", set.dump());
+        });
+    }
+    for (std::thread& page : pages) page.join();
+    const std::string text = studio->document().text;
+    for (int k = 0; k < many; ++k) CHECK(holds(text, "point = [" + std::to_string(k) + ", 6, 5]"));
+    CHECK(studio->document().undo.size() == 2 * many);
+}
+
+TEST_CASE("a body with a key of another kind, or one that there is not, is refused by its name") {
+    const Project project;
+    const auto studio = opened(project);
+    for (const auto& [path, body, why] :
+         {std::tuple("/api/robot/save", R"({"name":5})", "name: a text is needed"),
+          {"/api/robot/save", R"({"nam":"a"})", "nam: there is no such key; this request takes name and overwrite"},
+          {"/api/robot/save", R"({"overwrite":"yes"})", "overwrite: true or false is needed"},
+          {"/api/open", R"({"name":null})", "name: a text is needed"},
+          {"/api/compare", R"({"name":5})", "name: a text is needed"},
+          {"/api/print/twin", R"({"speed":"5"})", "speed: a number is needed"},
+          {"/api/print/speed", "{}", "speed: a number is needed"},
+          {"/api/print/speed", "", "speed: a number is needed"},
+          {"/api/print/port", R"({"device":1})", "device: a text is needed"},
+          {"/api/printer/measured", R"({"name":"tower","x_mm":"1"})", "x_mm: a number is needed"},
+          {"/api/printer/pattern", R"({"square":"1"})", "square: a number is needed"},
+          {"/api/job/save", R"({"name":["a"]})", "name: a text is needed"}}) {
+        INFO(path, " ", body);
+        const Response answer = ask(*studio, "POST", path, body);
+        CHECK(answer.status == 422);
+        CHECK(Json::parse(answer.body)["error"] == why);
+    }
+    CHECK(file_text(project.base / "project" / "bar.toml") == project_bar);
 }
 
 TEST_CASE("a job tells which robot text and which options it was sliced from, and pages know the present text") {

@@ -6,6 +6,7 @@ import { NumberField } from '../number_field';
 import { api, building, documentState, frame, helm, lines, mayDrive, onEvent, post, problems, say, scene } from '../store';
 import type { Material, Problem } from '../types';
 import { CodeArea } from './code_area';
+import { saveRobot } from './save_robot';
 import { keyOf } from './toml_edit';
 import { pinned } from './view_state';
 
@@ -165,14 +166,14 @@ export const autosave = signal(localStorage.getItem('pliant_autosave') === 'on')
 autosave.subscribe((on) => localStorage.setItem('pliant_autosave', on ? 'on' : 'off'));
 effect(() => {
   const d = documentState.value;
-  if (autosave.value && d.unsaved && d.name && mayDrive.value && problems.value.length === 0 && !building.value) void post('/api/robot/save', {});
+  if (autosave.value && d.unsaved && d.name && mayDrive.value && problems.value.length === 0 && !building.value) void saveRobot();
 });
 
 export function Editor() {
   const [saveAs, setSaveAs] = useState('');
   const d = documentState.value;
   const changed = text.value !== theirs.value;
-  const save = () => (d.name ? post('/api/robot/save', {}) : setSaveAs(`${(scene.value?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`));
+  const save = () => (d.name ? saveRobot() : setSaveAs(`${(scene.value?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`));
   return (
     <div class="editor">
       <div class="tools">
@@ -206,7 +207,7 @@ export function Editor() {
           class="saveas"
           onSubmit={async (e) => {
             e.preventDefault();
-            if (await post('/api/robot/save', { name: saveAs })) setSaveAs('');
+            if (await saveRobot(saveAs)) setSaveAs('');
           }}
         >
           <input value={saveAs} aria-label="File name" onInput={(e) => setSaveAs(e.currentTarget.value)} />

@@ -1,0 +1,62 @@
+// Saves the robot file, and asks before changes are written over that were made elsewhere.
+import { signal } from '@preact/signals';
+import { useDialog } from '../dismiss';
+import { api, documentState, post, say, type Refusal } from '../store';
+
+/// The file that was changed elsewhere; '': none.
+const changed = signal('');
+
+/// `name`: of a new file; '': that of the robot. False: nothing is saved, or not yet.
+export async function saveRobot(name = '', overwrite = false): Promise<boolean> {
+  const order = { ...(name && { name }), ...(overwrite && { overwrite }) };
+  try {
+    await api('/api/robot/save', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(order) });
+    return true;
+  } catch (error) {
+    if ((error as Refusal).changed) changed.value = documentState.value.name;
+    else say((error as Error).message);
+    return false;
+  }
+}
+
+export function SaveQuestion() {
+  const name = changed.value;
+  useDialog(name !== '');
+  if (!name) return null;
+  const close = () => (changed.value = '');
+  return (
+    <div class="question-back" onKeyDown={(e) => e.key === 'Escape' && close()}>
+      <div class="question card" role="alertdialog" aria-modal="true" aria-labelledby="changed-title" data-testid="changed-question">
+        <h2 id="changed-title">The file was changed elsewhere</h2>
+        <p>
+          <b>{name}</b> is no longer as it was opened or saved here. Overwriting it discards those changes; opening it again discards yours.
+        </p>
+        <div class="row left">
+          <button class="primary" ref={(b) => b?.focus()} onClick={close} data-testid="keep-unsaved">
+            Leave it unsaved
+          </button>
+          <button
+            class="danger"
+            data-testid="overwrite"
+            onClick={() => {
+              close();
+              void saveRobot('', true);
+            }}
+          >
+            Overwrite the file
+          </button>
+          <button
+            class="danger"
+            data-testid="open-again"
+            onClick={() => {
+              close();
+              void post('/api/open', { name });
+            }}
+          >
+            Open it again
+          </button>
+        </div>
+      </div>
+    </div>
+  );
+}
