@@ -303,7 +303,7 @@ Result<Fit> fit(const TensileTest& test, const FitOptions& options) {
     } else {
         solution = fit_linear(test, options.law);
     }
-    Fit result{make_law(options, solution.x), {}, 0, 0, {}, {}};
+    Fit result{make_law(options, solution.x), options.poisson_ratio, {}, 0, 0, {}, {}};
     for (const double l : test.stretch) result.stress_Pa.push_back(uniaxial_stress_Pa(result.law, l));
     const auto rows = static_cast<double>(test.stretch.size());
     const double squares = (map(result.stress_Pa) - map(test.stress_Pa)).squaredNorm();

@@ -32,6 +32,7 @@ struct Constant {
 
 struct Fit {
     material::Law law;
+    double poisson_ratio = 0;  ///< of the law as it was asked for: its moduli give it only up to rounding
     std::vector<Constant> constants;
     double rms_error_Pa = 0;
     double r_squared = 0;

@@ -159,6 +159,16 @@ TEST_CASE("the fitted law is written as a material for the robot file") {
     CHECK(fit_json(y, made_test(yeoh, 0)).find("\"confidence_95\"") != std::string::npos);
 }
 
+TEST_CASE("the material has the Poisson's ratio that was asked for, without rounding") {
+    const TensileTest test = made_test([](double l) { return 0.1e6 * (l - 1 / (l * l)); }, 0);
+    for (const double nu : {0.0, 0.1, 0.3}) {
+        const Result<Fit> found = fit(test, {.law = FitLaw::neo_hookean, .poisson_ratio = nu});
+        REQUIRE(found);
+        CHECK(material_toml(*found, "cast").ends_with(fmt::format("\npoisson_ratio = {:g}\n", nu)));
+        CHECK(fit_json(*found, test).find(fmt::format("\"poisson_ratio\": {:.1f}", nu)) != std::string::npos);
+    }
+}
+
 TEST_CASE("rows at stretch 1, which tell nothing, do not narrow the interval") {
     TensileTest test{{1.1, 1.2, 1.3, 1.4}, {93060.1, 179980, 237106, 296240}};
     const Constant alone = fit_of(test, FitLaw::neo_hookean).constants[0];

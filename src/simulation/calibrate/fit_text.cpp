@@ -28,13 +28,12 @@ std::string join(const std::vector<std::string>& list) {
 std::optional<double> modulus_of_material(const Fit& fit) {
     const auto modulus = std::ranges::find(fit.constants, "youngs_modulus", &Constant::name);
     if (modulus == fit.constants.end()) return std::nullopt;
-    return modulus->value * 2 * (1 + material::poisson_ratio(material::moduli(fit.law))) / 3;
+    return modulus->value * 2 * (1 + fit.poisson_ratio) / 3;
 }
 
 }  // namespace
 
 std::string material_toml(const Fit& fit, const std::string& name) {
-    const double nu = material::poisson_ratio(material::moduli(fit.law));
     std::string text = fmt::format("[material.{}]\nlaw = \"{}\"\n", config::key_text(name), material::name(fit.law));
     std::vector<std::string> mu;
     std::vector<std::string> alpha;
@@ -49,7 +48,7 @@ std::string material_toml(const Fit& fit, const std::string& name) {
             text += fmt::format("{} = \"{}\"\n", c.name, pressure(c.value));
     }
     if (!mu.empty()) text += fmt::format("mu = [{}]\nalpha = [{}]\n", join(mu), join(alpha));
-    return text + fmt::format("poisson_ratio = {:.6g}\n", nu);
+    return text + fmt::format("poisson_ratio = {:.6g}\n", fit.poisson_ratio);
 }
 
 std::string fit_text(const Fit& fit) {
@@ -81,8 +80,7 @@ std::string fit_json(const Fit& fit, const TensileTest& test) {
         json["constants"].push_back(std::move(one));
     }
     if (const auto modulus = modulus_of_material(fit))
-        json["material"] = {{"youngs_modulus_Pa", *modulus},
-                            {"poisson_ratio", material::poisson_ratio(material::moduli(fit.law))}};
+        json["material"] = {{"youngs_modulus_Pa", *modulus}, {"poisson_ratio", fit.poisson_ratio}};
     json["r_squared"] = fit.r_squared;
     json["rms_error_Pa"] = fit.rms_error_Pa;
     json["warnings"] = fit.warnings;
