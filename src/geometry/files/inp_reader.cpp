@@ -149,6 +149,8 @@ private:
         card_ = std::move(card);
         data_ = Data::none;
         if (card_.keyword == "include") return error("*INCLUDE is not followed; put the included lines in its place");
+        if (card_.has("input") && is_read())
+            return error("*" + card_.keyword + " with INPUT=FILE is not followed; put the lines of the file below it");
         constexpr std::array<std::string_view, 7> generators = {"elgen", "ngen",   "elcopy", "ncopy",
                                                                 "nfill", "elfill", "nmap"};
         if (std::ranges::find(generators, card_.keyword) != generators.end())
@@ -168,6 +170,12 @@ private:
             if (set >= 0) sets_[static_cast<std::size_t>(set)].section = true;
         }
         return {};
+    }
+
+    /// Cards whose lines make up the mesh.
+    [[nodiscard]] bool is_read() const {
+        return card_.keyword == "node" || card_.keyword == "elset" ||
+               (card_.keyword == "element" && tet_width(card_.value("type")) > 0);
     }
 
     /// Parts keep their coordinates; assemblies of several parts, or of a moved one, are not supported.

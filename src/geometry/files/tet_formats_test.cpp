@@ -250,6 +250,11 @@ TEST_CASE("Abaqus: errors name the line") {
     CHECK(tet_problem(replaced(deck, "9, 1., 1., 1.", "4, 1., 1., 1.")).find("a:9: node 4 comes twice") == 0);
     CHECK(tet_problem(replaced(deck, "*MATERIAL, NAME=M", "*INCLUDE, INPUT=b.inp")).find("*INCLUDE") !=
           std::string::npos);
+    for (const char* card :
+         {"*Node, INPUT=b.inp", "*ELEMENT, TYPE=C3D4, ELSET=B, input=b.inp", "*ELSET, ELSET=B, INPUT=b.inp"})
+        CHECK(tet_problem(replaced(deck, "*MATERIAL, NAME=M", card)).find("with INPUT=FILE is not followed") !=
+              std::string::npos);
+    CHECK(tet_problem(replaced(deck, "*MATERIAL, NAME=M", "*ELEMENT, TYPE=S3, INPUT=b.inp")).empty());
     CHECK(tet_problem(replaced(deck, "*MATERIAL, NAME=M", "*ELGEN, ELSET=BOTH")).find("*elgen makes nodes") !=
           std::string::npos);
     CHECK(tet_problem(replaced(deck, "*NODE", "*NODE, SYSTEM=C")).find("another system of coordinates") !=
