@@ -11,6 +11,7 @@
 #include "geometry/files/vtk_cells.hpp"
 #include "geometry/files/vtu_arrays.hpp"
 #include "geometry/files/vtu_skeleton.hpp"
+#include "geometry/mesh/point_welder.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -21,11 +22,70 @@ struct Piece {
     Numbers points, connectivity, offsets, types, regions;
 };
 
-Status add_piece(const Piece& piece, std::int64_t first_point, TetCollector& collector) {
+bool is_tet_cell(double type) {
+    return type == vtk_tetra || type == vtk_quadratic_tetra;
+}
+
+/// Marks the points of the tets of a piece. Numbers of points that do not exist are told when the tets are added.
+std::vector<bool> used_points(const Piece& piece) {
+    std::vector<bool> used(piece.points.size() / 3, false);
+    for (std::size_t c = 0; c < piece.types.size(); ++c) {
+        if (!is_tet_cell(piece.types[c])) continue;
+        const auto end = static_cast<std::size_t>(piece.offsets[c]);
+        for (auto i = static_cast<std::size_t>(c == 0 ? 0 : piece.offsets[c - 1]); i < end; ++i) {
+            const double node = piece.connectivity[i];
+            if (node >= 0 && node < static_cast<double>(used.size())) used[static_cast<std::size_t>(node)] = true;
+        }
+    }
+    return used;
+}
+
+/// Which point stands for each point of a file: programs that divide a mesh into pieces repeat the points between them.
+struct SharedPoints {
+    std::vector<std::int64_t> instead;  ///< (points of all pieces)
+    std::size_t joined = 0;             ///< points that have another one instead
+};
+
+/// Points of tets at exactly the same place in several pieces become one. Where one piece has several there, as along a
+/// crack, nobody knows which of them belongs to which of another piece: these stay apart.
+SharedPoints share_points(const std::vector<Piece>& pieces, const std::vector<Vec3>& points) {
+    constexpr std::int64_t nobody = -1, many = -2;
+    PointWelder places;
+    std::vector<int> place(points.size(), -1);
+    std::vector<std::int64_t> last_piece, first_point;  // (places)
+    std::size_t point = 0;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const auto own = static_cast<std::int64_t>(p);
+        for (const bool used : used_points(pieces[p])) {
+            if (used) {
+                place[point] = places.add(points[point]);
+                const auto at = static_cast<std::size_t>(place[point]);
+                if (at == last_piece.size()) {
+                    last_piece.push_back(nobody);
+                    first_point.push_back(static_cast<std::int64_t>(point));
+                }
+                last_piece[at] = last_piece[at] == own || last_piece[at] == many ? many : own;
+            }
+            ++point;
+        }
+    }
+    SharedPoints shared;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto own = static_cast<std::int64_t>(i);
+        const bool alone = place[i] < 0 || last_piece[static_cast<std::size_t>(place[i])] == many;
+        shared.instead.push_back(alone ? own : first_point[static_cast<std::size_t>(place[i])]);
+        if (shared.instead.back() != own) ++shared.joined;
+    }
+    return shared;
+}
+
+/// `instead`: empty, or which point stands for each of the file.
+Status add_piece(const Piece& piece, std::int64_t first_point, const std::vector<std::int64_t>& instead,
+                 TetCollector& collector) {
     const std::size_t points = piece.points.size() / 3;
     std::vector<std::int64_t> nodes;
     for (std::size_t c = 0; c < piece.types.size(); ++c) {
-        if (piece.types[c] != vtk_tetra && piece.types[c] != vtk_quadratic_tetra) continue;
+        if (!is_tet_cell(piece.types[c])) continue;
         const auto begin = static_cast<std::size_t>(c == 0 ? 0 : piece.offsets[c - 1]);
         const auto end = static_cast<std::size_t>(piece.offsets[c]);
         if (end - begin != (piece.types[c] == vtk_tetra ? 4 : 10))
@@ -35,7 +95,8 @@ Status add_piece(const Piece& piece, std::int64_t first_point, TetCollector& col
             const double node = piece.connectivity[i];
             if (!(node >= 0 && node < static_cast<double>(points) && node == std::floor(node)))
                 return input_error("cell {} names point {}, there are {}", c, node, points);
-            nodes.push_back(first_point + static_cast<std::int64_t>(node));
+            const std::int64_t point = first_point + static_cast<std::int64_t>(node);
+            nodes.push_back(instead.empty() ? point : instead[static_cast<std::size_t>(point)]);
         }
         const double region = piece.regions.empty() ? 0 : piece.regions[c];
         if (Status status = collector.add(nodes, static_cast<std::int64_t>(region)); !status)
@@ -53,6 +114,7 @@ Result<TetMesh> assemble(const std::vector<Piece>& pieces, const std::map<std::i
         for (std::size_t i = 0; i + 2 < piece.points.size(); i += 3)
             points.push_back({piece.points[i], piece.points[i + 1], piece.points[i + 2]});
     }
+    const SharedPoints shared = pieces.size() > 1 ? share_points(pieces, points) : SharedPoints{};
     TetCollector collector(std::move(points));
     std::size_t cells = 0, nodes = 0;
     for (const Piece& piece : pieces) {
@@ -62,10 +124,17 @@ Result<TetMesh> assemble(const std::vector<Piece>& pieces, const std::map<std::i
     collector.reserve(cells, nodes);
     std::int64_t first_point = 0;
     for (const Piece& piece : pieces) {
-        if (Status status = add_piece(piece, first_point, collector); !status) return tl::unexpected(status.error());
+        if (Status status = add_piece(piece, first_point, shared.instead, collector); !status)
+            return tl::unexpected(status.error());
         first_point += static_cast<std::int64_t>(piece.points.size() / 3);
     }
-    return collector.finish(names);
+    Result<TetMesh> mesh = collector.finish(names);
+    if (mesh && shared.joined > 0)
+        mesh->notes.insert(mesh->notes.begin(),
+                           fmt::format("{} points of its {} pieces lie exactly at points of other pieces: they were "
+                                       "joined with them",
+                                       shared.joined, pieces.size()));
+    return mesh;
 }
 
 class VtuReader {

@@ -136,11 +136,40 @@ TEST_CASE("text arrays and several pieces are read") {
     CHECK(one->region_names == std::vector<std::string>{"-3"});
     const std::size_t begin = text_file.find("<Piece>");
     const std::string piece = text_file.substr(begin, text_file.find("</UnstructuredGrid>") - begin);
-    const Result<TetMesh> two = parse_vtu(replaced(text_file, piece, piece + replaced(piece, "-3<", "5<")), "a.vtu");
+    const std::string moved =
+        replaced(replaced(piece, "-3<", "5<"), "0 0 0 1 0 0 0 1 0 0 0 1", "0 0 9 1 0 9 0 1 9 0 0 10");
+    const Result<TetMesh> two = parse_vtu(replaced(text_file, piece, piece + moved), "a.vtu");
     REQUIRE_MESSAGE(two, (two ? "" : two.error().message));
     CHECK(two->points.size() == 8);
+    CHECK(two->notes.empty());
     CHECK(volume(*two) == near(2.0 / 6, {.relative = 1e-12}));
     CHECK(two->region == std::vector<int>{0, 1});
+}
+
+TEST_CASE("pieces share the points that they repeat, a piece keeps its own apart") {
+    const std::size_t begin = text_file.find("<Piece>");
+    const std::string piece = text_file.substr(begin, text_file.find("</UnstructuredGrid>") - begin);
+    const auto joined = [&](const std::string& first, const std::string& second) {
+        Result<TetMesh> mesh = parse_vtu(replaced(text_file, piece, first + second), "a.vtu");
+        REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+        return std::move(*mesh);
+    };
+    // The second tet is on the other side of the slanted face; a point that no tet uses counts for nothing.
+    const std::string other = replaced(piece, "0 0 0 1 0 0 0 1 0 0 0 1", "1 0 0 0 1 0 0 0 1 1 1 1 0 0 0");
+    const TetMesh two = joined(piece, other);
+    CHECK(two.points.size() == 5);
+    CHECK(two.tet_count() == 2);
+    REQUIRE(two.notes.size() == 1);
+    CHECK(two.notes.front() ==
+          "3 points of its 2 pieces lie exactly at points of other pieces: they were joined with them");
+    // Two tets of one piece on both sides of a crack, with points of their own; the next piece joins neither.
+    std::string cracked = replaced(piece, "0 0 0 1 0 0 0 1 0 0 0 1", "0 0 0 1 0 0 0 1 0 0 0 1 1 0 0 0 1 0 0 0 1 1 1 1");
+    for (const auto& [from, to] :
+         {std::pair("0 1 2 3<", "0 1 2 3 4 5 6 7<"), {">4<", ">4 8<"}, {">10<", ">10 10<"}, {">-3<", ">-3 -3<"}})
+        cracked = replaced(cracked, from, to);
+    const TetMesh three = joined(cracked, replaced(piece, "0 0 0 1 0 0 0 1 0 0 0 1", "0 0 0 1 0 0 0 1 0 0 0 -1"));
+    CHECK(three.tet_count() == 3);
+    CHECK(three.points.size() == 11);
 }
 
 TEST_CASE("damaged files give a reason, and stated sizes are not trusted") {
