@@ -21,7 +21,7 @@ struct WorkspaceOptions {
     int side = 9;       ///< samples along each input of a sheet, 2 to 1000
     int between = 100;  ///< number of further samples, spread over the ranges, 0 to 1,000,000; none with one input
     /// Folder in which completed pieces are stored, so that the search can be resumed; empty: nothing is stored. An
-    /// older checkpoint there is replaced, unless the search resumes from it.
+    /// older checkpoint there is replaced, unless the search resumes from it. Nothing else may work on it meanwhile.
     std::filesystem::path checkpoint{};
     /// Resumes from the checkpoint; the results are those of an uninterrupted search.
     bool resume = false;
@@ -68,7 +68,7 @@ public:
     /// surfaces and a picture.
     /// @throws Failure if a file cannot be written, or when cancelled.
     void write(const std::filesystem::path& folder, const Watch& watch = {}) const;
-    /// Deletes the checkpoint of the search, if there is one.
+    /// Deletes the checkpoint of the search, if there is one and nothing else works on it by now.
     /// @throws Failure if it cannot be deleted.
     void remove_checkpoint() const;
 

@@ -34,13 +34,28 @@ const std::string bar = R"(
     program = { steps = 80 }
 )";
 
-pid_t started(const fs::path& robot, const fs::path& results, std::vector<std::string> more) {
-    std::vector<std::string> words{"simulate", robot.string(), "-o", results.string(), "--pictures", "none", "-q"};
+pid_t started(std::vector<std::string> words, const std::vector<std::string>& more) {
     words.insert(words.end(), more.begin(), more.end());
     const auto process = start_process(PLIANT_PROGRAM, words, {});
     REQUIRE(process);
     return *process;
 }
+
+pid_t started(const fs::path& robot, const fs::path& results, const std::vector<std::string>& more) {
+    return started({"simulate", robot.string(), "-o", results.string(), "--pictures", "none", "-q"}, more);
+}
+
+/// A process that does not go on until the end of the scope.
+class Halted {
+public:
+    explicit Halted(pid_t process) : process_(process) { ::kill(process_, SIGSTOP); }
+    Halted(const Halted&) = delete;
+    Halted& operator=(const Halted&) = delete;
+    ~Halted() { ::kill(process_, SIGCONT); }
+
+private:
+    pid_t process_;
+};
 
 int exit_status(pid_t process) {
     int status = 0;
@@ -128,4 +143,48 @@ TEST_CASE("resuming without a checkpoint, or from one of another robot, is refus
     CHECK(exit_status(started(robot, results, {"--resume", "--set", "program.tolerance=1e-5"})) == 2);
     REQUIRE(write_file(robot, bar + "\n# changed\n"));
     CHECK(exit_status(started(robot, results, {"--resume"})) == 2);
+}
+
+TEST_CASE("a second run into the folder of one at work is refused, and the first ends as if alone") {
+    const test::Folder folder;
+    const fs::path robot = folder / "bar.toml", whole = folder / "whole", results = folder / "out";
+    REQUIRE(write_file(robot, bar));
+    CHECK(exit_status(started(robot, whole, {})) == 0);
+    const pid_t first = started(robot, results, {"--checkpoint-every", "1"});
+    for (int wait = 0; wait < 20000 && kept(results) == 0; ++wait)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    {
+        const Halted halted(first);
+        CHECK(exit_status(started(robot, results, {"--checkpoint-every", "1", "--set", "program.steps=4"})) == 2);
+        CHECK(exit_status(started(robot, results, {"--resume"})) == 2);
+    }
+    CHECK(exit_status(first) == 0);
+    CHECK_FALSE(fs::exists(results.string() + ".checkpoint"));
+    CHECK(read_file(results / "markers.csv").value() == read_file(whole / "markers.csv").value());
+}
+
+TEST_CASE("a second search of a workspace into the same folder is refused; a killed one is resumed") {
+    const test::Folder folder;
+    const fs::path robot = folder / "bar.toml";
+    REQUIRE(write_file(robot, bar));
+    const auto search = [&](const std::string& results, const std::vector<std::string>& more) {
+        return started({"workspace", robot.string(), "-o", (folder / results).string(), "-q", "--side", "12", "--set",
+                        "cable.flexor.range=['0 mm', '20 mm']"},
+                       more);
+    };
+    CHECK(exit_status(search("whole", {})) == 0);
+    const pid_t first = search("out", {});
+    const fs::path origin = folder / "out.checkpoint" / "origin";
+    for (int wait = 0; wait < 20000 && !fs::exists(origin); ++wait)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    {
+        const Halted halted(first);
+        CHECK(exit_status(search("out", {"--set", "material.soft.youngs_modulus=2 MPa"})) == 2);
+        CHECK(exit_status(search("out", {"--resume"})) == 2);
+    }
+    ::kill(first, SIGKILL);
+    CHECK(exit_status(first) == -SIGKILL);
+    CHECK(exit_status(search("out", {"--resume"})) == 0);
+    CHECK(read_file(folder / "out/workspace.csv").value() == read_file(folder / "whole/workspace.csv").value());
+    CHECK_FALSE(fs::exists(folder / "out.checkpoint"));
 }

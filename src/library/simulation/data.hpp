@@ -25,7 +25,7 @@ namespace pliant {
 struct Robot::Data {
     robot::Robot robot;
     std::string text;                  ///< of the robot file
-    std::optional<std::string> base;   ///< text of the robot that it stands on, if any
+    std::optional<std::string> base;   ///< texts of the robots that it stands on, if any
     std::filesystem::path file;        ///< the robot file or, for a text, the file it stands for
     std::vector<std::string> changes;  ///< overrides applied to the text
     bool has_file = false;             ///< the text was read from the file

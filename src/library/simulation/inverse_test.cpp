@@ -21,8 +21,12 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A bar whose tip has a goal and whose cable may be shortened by up to 8 mm.
-Robot with_goal(const std::string& wanted) {
-    return bar("goal = [{ name = \"reach\", marker = \"tip\", " + wanted + " }]\n");
+std::string with_goal_text(const std::string& wanted) {
+    return test::bar_text("goal = [{ name = \"reach\", marker = \"tip\", " + wanted + " }]\n");
+}
+
+Robot with_goal(const std::string& wanted, const std::vector<std::string>& changes = {}) {
+    return Robot::parse(with_goal_text(wanted), {}, changes);
 }
 
 const char* const reachable = "plane = { point = [0, 0, 8], normal = [0, 0, 1] }, tolerance = \"0.01 mm\"";
@@ -173,6 +177,62 @@ TEST_CASE("a cancelled workspace search resumes from its checkpoint to the same 
     CHECK_THROWS_AS((void)whole.sheets(1), Failure);
 }
 
+TEST_CASE("a damaged piece of a workspace, or one of another search, is solved anew") {
+    const test::Folder folder;
+    const Model model(with_goal(reachable)), other(with_goal(reachable, {"material.soft.youngs_modulus=2 MPa"}));
+    WorkspaceOptions kept{.side = 3, .between = 0, .checkpoint = folder / "kept"};
+    const std::string right = workspace(model, kept).json();
+    const std::string piece = read_file(folder / "kept/piece_0000").value();
+    kept.resume = true;
+    for (std::size_t at = 0; at < piece.size(); at += 29) {
+        std::string changed = piece;
+        changed[at] = static_cast<char>(changed[at] ^ 4);
+        REQUIRE(write_file(folder / "kept/piece_0000", changed));
+        CHECK(workspace(model, kept).json() == right);
+    }
+    kept.resume = false;
+    kept.checkpoint = folder / "other";
+    CHECK(workspace(other, kept).json() != right);
+    fs::copy_file(folder / "other/piece_0000", folder / "kept/piece_0000", fs::copy_options::overwrite_existing);
+    kept = {.side = 3, .between = 0, .checkpoint = folder / "kept", .resume = true};
+    CHECK(workspace(model, kept).json() == right);
+    CHECK_THROWS_AS((void)workspace(other, kept), Failure);
+}
+
+TEST_CASE("a second search or run on the checkpoint of one at work is refused, and the first ends as if alone") {
+    const test::Folder folder;
+    const Model model(with_goal(reachable)), other(with_goal(reachable, {"material.soft.youngs_modulus=2 MPa"}));
+    const WorkspaceOptions kept{.side = 3, .between = 0, .checkpoint = folder / "kept"};
+    const std::string refusal = (folder / "kept").string() +
+                                ": another process is at work on this checkpoint; wait for it, or choose another "
+                                "folder for the results";
+    int refused = 0;
+    const Workspace found = workspace(model, kept, [&](std::string_view, double share) {
+        if (share < 0.5 || refused > 0) return true;
+        ++refused;
+        CHECK_THROWS_WITH_AS((void)workspace(other, kept), refusal.c_str(), Failure);
+        return true;
+    });
+    CHECK(refused == 1);
+    CHECK(found.json() == workspace(model, {.side = 3, .between = 0}).json());
+    found.remove_checkpoint();
+    CHECK_FALSE(fs::exists(folder / "kept"));
+
+    const RunOptions saved{.checkpoint = folder / "kept"};
+    refused = 0;
+    const ProgramResult first = run(model, saved, [&](std::string_view, double share) {
+        if (share < 0.5 || refused > 0) return true;
+        ++refused;
+        CHECK_THROWS_WITH_AS((void)run(other, saved), refusal.c_str(), Failure);
+        return true;
+    });
+    CHECK(refused == 1);
+    CHECK(first.converged());
+    CHECK(run(other, saved).converged());
+    first.remove_checkpoint();
+    CHECK_FALSE(fs::exists(folder / "kept"));
+}
+
 TEST_CASE("a checkpoint does not overwrite a folder with other files") {
     const test::Folder folder;
     fs::create_directories(folder / "kept");
@@ -180,6 +240,19 @@ TEST_CASE("a checkpoint does not overwrite a folder with other files") {
     const Model model(with_goal(reachable));
     CHECK_THROWS_AS((void)workspace(model, {.side = 2, .between = 0, .checkpoint = folder / "kept"}), Failure);
     CHECK(fs::exists(folder / "kept/mine"));
+}
+
+TEST_CASE("the program of a robot file that stands on another one is written and runs") {
+    const test::Folder folder;
+    REQUIRE(write_file(folder / "bar.toml", with_goal_text(reachable)));
+    REQUIRE(
+        write_file(folder / "soft.toml", "robot = \"bar.toml\"\nset = [\"material.soft.youngs_modulus=0.5 MPa\"]\n"));
+    const InverseResult result = inverse(Model(Robot::load(folder / "soft.toml")));
+    REQUIRE(result.reached());
+    (void)result.write(folder / "out", {}, [] { return true; });
+    const ProgramResult again = run(Model(Robot::load(folder / "out/program.toml")));
+    REQUIRE(again.converged());
+    CHECK(again.step(again.step_count() - 1).observed.markers[0].position_m[2] == near(0.008, {.absolute = 2e-5}));
 }
 
 TEST_CASE("the program of goals with times is written, however late the times are") {

@@ -118,6 +118,8 @@ ProgramResult run(const Model& model, const RunOptions& options, const Watch& wa
     }
     sim::Trajectory trajectory = sim::run(data.scene.model, data.scene.robot.program, progress, std::move(run));
     progress.rethrow();
+    // Whoever holds the result may begin or resume another run there.
+    if (kept.checkpoint) kept.checkpoint->release();
     auto result = std::make_shared<ProgramResult::Data>(
         ProgramResult::Data{model.data(), std::move(trajectory), std::move(kept.checkpoint)});
     report::Simulation& report =

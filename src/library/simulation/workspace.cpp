@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/core/checkpoint_folder.hpp"
+#include "base/core/digest.hpp"
 #include "base/core/files.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
@@ -21,50 +23,51 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The completed pieces, in a folder with an identification of the search.
+/// A file that says of which search the pieces are; a folder with it is a checkpoint.
+constexpr const char* origin_name = "origin";
+
+/// The completed pieces, in a folder with an identification of the search, in which no other process works meanwhile.
 class KeptPieces {
 public:
     static KeptPieces create(const fs::path& folder, const std::string& origin) {
-        if (!may_replace_folder(folder, origin_name))
-            throw Failure(Failure::Kind::input,
-                          folder.string() + ": is there already, and is not a checkpoint; move it away",
-                          folder.string());
-        std::error_code code;
-        fs::remove_all(folder, code);
-        fs::create_directories(folder, code);
-        if (code)
-            throw Failure(Failure::Kind::failed, fmt::format("{}: cannot be made: {}", folder.string(), code.message()),
-                          folder.string());
-        library::check(write_file(folder / origin_name, origin));
-        return KeptPieces(folder);
+        KeptPieces kept(library::value_of(CheckpointFolder::create(folder, origin_name)), origin);
+        library::check(kept.folder_.write(origin_name, origin));
+        return kept;
     }
-    /// `older`: how the same search was identified before its mesh was.
-    static KeptPieces open(const fs::path& folder, const std::string& origin, const std::string& older) {
-        const Result<std::string> known = read_file(folder / origin_name);
-        if (!known)
+    static KeptPieces open(const fs::path& folder, const std::string& origin) {
+        std::error_code code;
+        if (!fs::exists(folder / origin_name, code))
             throw Failure(Failure::Kind::input, folder.string() + ": holds no search to go on with", folder.string());
-        if (*known != origin && *known != older)
-            throw Failure(Failure::Kind::input, folder.string() + ": is of another robot file, or of other options",
+        KeptPieces kept(library::value_of(CheckpointFolder::open(folder, origin_name)), origin);
+        if (library::value_of(read_file(folder / origin_name)) != origin)
+            throw Failure(Failure::Kind::input,
+                          folder.string() + ": is of another robot file, of other options or of an earlier Pliant",
                           folder.string());
-        return KeptPieces(folder);
+        return kept;
     }
 
+    /// None where it is missing, damaged or of another search: it is solved anew.
     [[nodiscard]] std::optional<sim::inverse::WorkspacePiece> read(std::size_t k) const {
-        const Result<std::string> bytes = read_file(file_of(k));
+        const Result<std::string> bytes = read_file(folder_.path() / file_of(k));
         if (!bytes) return std::nullopt;
-        auto piece = sim::inverse::piece_from_bytes(*bytes);
+        auto piece = sim::inverse::piece_from_bytes(*bytes, identity_of(k));
         return piece ? std::optional(std::move(*piece)) : std::nullopt;
     }
     [[nodiscard]] Status write(std::size_t k, const sim::inverse::WorkspacePiece& piece) const {
-        return write_file(file_of(k), sim::inverse::piece_bytes(piece));
+        return folder_.write(file_of(k), sim::inverse::piece_bytes(piece, identity_of(k)));
     }
-    [[nodiscard]] const fs::path& folder() const { return folder_; }
 
 private:
-    static constexpr const char* origin_name = "origin";
-    explicit KeptPieces(fs::path folder) : folder_(std::move(folder)) {}
-    [[nodiscard]] fs::path file_of(std::size_t k) const { return folder_ / fmt::format("piece_{:04}", k); }
-    fs::path folder_;
+    KeptPieces(CheckpointFolder folder, const std::string& origin) : folder_(std::move(folder)) {
+        Digest digest;
+        digest.add(origin.data(), origin.size());
+        search_ = digest.text();
+    }
+    [[nodiscard]] static std::string file_of(std::size_t k) { return fmt::format("piece_{:04}", k); }
+    [[nodiscard]] std::string identity_of(std::size_t k) const { return fmt::format("{} {}", search_, k); }
+
+    CheckpointFolder folder_;
+    std::string search_;
 };
 
 std::optional<KeptPieces> open_pieces(const Model::Data& model, const WorkspaceOptions& options) {
@@ -73,9 +76,10 @@ std::optional<KeptPieces> open_pieces(const Model::Data& model, const WorkspaceO
             throw Failure(Failure::Kind::input, "a search is to be gone on with, but no checkpoint is named");
         return std::nullopt;
     }
-    const std::string search = fmt::format("{} {}\n{}", options.side, options.between, model.robot->origin());
-    const std::string origin = search + "\n" + sim::mesh_digest(model.scene.model.mesh());
-    return options.resume ? KeptPieces::open(options.checkpoint, origin, search)
+    // 2: pieces with a checksum and the search that they are of.
+    const std::string origin = fmt::format("workspace 2\n{} {}\n{}\n{}", options.side, options.between,
+                                           model.robot->origin(), sim::mesh_digest(model.scene.model.mesh()));
+    return options.resume ? KeptPieces::open(options.checkpoint, origin)
                           : KeptPieces::create(options.checkpoint, origin);
 }
 
@@ -183,12 +187,7 @@ void Workspace::write(const fs::path& folder, const Watch& watch) const {
 
 void Workspace::remove_checkpoint() const {
     if (data_->checkpoint.empty()) return;
-    std::error_code code;
-    fs::remove_all(data_->checkpoint, code);
-    if (code)
-        throw Failure(Failure::Kind::failed,
-                      fmt::format("{}: cannot be deleted: {}", data_->checkpoint.string(), code.message()),
-                      data_->checkpoint.string());
+    library::check(CheckpointFolder::released(data_->checkpoint, origin_name).remove());
 }
 
 }  // namespace pliant

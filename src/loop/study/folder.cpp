@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/core/file_lock.hpp"
 #include "base/core/files.hpp"
 
 namespace pliant::study {
@@ -114,11 +115,9 @@ Result<FileHandle> lead(const fs::path& folder) {
     const std::string name = (folder / "lock").string();
     FileHandle file(::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
     if (!file.is_open()) return failure("{}: cannot be opened: {}", name, std::strerror(errno));
-    struct flock whole {};
-    whole.l_type = F_WRLCK;
-    whole.l_whence = SEEK_SET;
-    if (::fcntl(file.number(), F_OFD_SETLK, &whole) == 0) return file;
-    if (errno == EAGAIN || errno == EACCES)
+    const LockOutcome outcome = try_lock(file);
+    if (outcome == LockOutcome::ours) return file;
+    if (outcome == LockOutcome::taken)
         return input_error("{}: another process is at work on this study", folder.string());
     return failure("{}: cannot be locked: {}; a study needs a file system with locks (NFS 4, Lustre with -o flock)",
                    name, std::strerror(errno));

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/core/digest.hpp"
+#include "base/core/file_lock.hpp"
 #include "base/core/files.hpp"
 #include "base/core/json.hpp"
 
@@ -118,12 +119,10 @@ tl::unexpected<Error> system_failure(const std::string& file, std::string_view w
 }
 
 /// True: locked by us. False: by another process.
-Result<bool> lock(int file, const std::string& name) {
-    struct flock whole {};
-    whole.l_type = F_WRLCK;
-    whole.l_whence = SEEK_SET;
-    if (::fcntl(file, F_OFD_SETLK, &whole) == 0) return true;
-    if (errno == EAGAIN || errno == EACCES) return false;
+Result<bool> lock(const FileHandle& file, const std::string& name) {
+    const LockOutcome outcome = try_lock(file);
+    if (outcome == LockOutcome::ours) return true;
+    if (outcome == LockOutcome::taken) return false;
     return failure("{}: cannot be locked: {}; a study needs a file system with locks (NFS 4, Lustre with -o flock)",
                    name, std::strerror(errno));
 }
@@ -215,7 +214,7 @@ Result<std::optional<RecordFile>> RecordFile::claim(const Plan& plan, const fs::
     const std::string name = records_file(folder, chunk).string();
     FileHandle file(::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_APPEND, 0666));
     if (!file.is_open()) return system_failure(name, "cannot be opened");
-    const Result<bool> ours = lock(file.number(), name);
+    const Result<bool> ours = lock(file, name);
     if (!ours) return tl::unexpected(ours.error());
     if (!*ours) return std::optional<RecordFile>{};
     const Result<std::string> text = read_all(file.number(), name);

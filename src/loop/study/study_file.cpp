@@ -1,6 +1,7 @@
 #include "loop/study/study_file.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <optional>
 
 #include "base/core/config.hpp"
@@ -296,6 +297,18 @@ Draft read_draft(Reader& root, const StudyContext& context, const fs::path& file
     return draft;
 }
 
+/// Piece by piece: a mesh may be larger than what one wants to hold. What cannot be read the command tells.
+void add_file(const fs::path& path, Digest& digest) {
+    std::error_code error;
+    const std::string size = fmt::format("{}:", fs::file_size(path, error));
+    if (error) return;
+    digest.add(size.data(), size.size());
+    std::ifstream in(path, std::ios::binary);
+    std::vector<char> piece(std::size_t{1} << 20);
+    while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
+        digest.add(piece.data(), static_cast<std::size_t>(in.gcount()));
+}
+
 /// Rows depend on these bytes: any change makes a different study.
 std::string fingerprint_of(std::string_view text, std::string_view table, const Plan& plan) {
     Digest digest;
@@ -307,14 +320,7 @@ std::string fingerprint_of(std::string_view text, std::string_view table, const 
     add(plan.version);
     add(text);
     add(table);
-    constexpr std::uintmax_t largest = std::uintmax_t{64} << 20;
-    for (const std::string& word : plan.command) {
-        for (const fs::path& path : files_of(word, plan.folder)) {
-            std::error_code error;
-            if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > largest) continue;
-            if (const auto bytes = read_file(path, largest); bytes) add(*bytes);
-        }
-    }
+    for (const fs::path& path : files_of(plan)) add_file(path, digest);
     return digest.text();
 }
 

@@ -239,3 +239,39 @@ TEST_CASE("a change of a robot that a file stands on, or of a file that an optio
     REQUIRE(write_file(folder / "seen.csv", "tip_x_mm\n2\n"));
     CHECK(fingerprint() != second);
 }
+
+TEST_CASE("a change of a mesh, surface or table that a robot is read from gives another fingerprint") {
+    const pliant::test::Folder folder("study");
+    std::filesystem::create_directories(folder / "far");
+    REQUIRE(write_file(folder / "finger.toml", "robot = \"far/middle.toml\"\n"));
+    REQUIRE(write_file(folder / "far/middle.toml", "robot = \"base.toml\"\n"));
+    REQUIRE(write_file(folder / "far/base.toml",
+                       "mesh.file = \"m.vtk\"\nbody = [{ geometry = \"part.step\" }]\nobstacle = [{ surface = "
+                       "\"wall.stl\" }]\ngoal = [{ path = \"way.csv\" }]\n"));
+    const std::string keys =
+        "key.mesh = { set = \"mesh.file\", values = [\"m.vtk\", \"n.vtk\"] }\n"
+        "key.part = { values = [\"one\", \"two\"] }\n";
+    const auto fingerprint = [&] {
+        const auto plan = parsed(
+            "command = [\"simulate\", \"finger.toml\", \"--set\", \"body.0.geometry='other.stl'\", "
+            "\"--measured\", \"{part}.csv\"]\nplan = \"grid\"\n" +
+                keys + tension,
+            folder / "s.toml");
+        REQUIRE_MESSAGE(plan, (plan ? "" : plan.error().message));
+        return plan->fingerprint;
+    };
+    std::string last = fingerprint();
+    for (const char* file : {"far/m.vtk", "far/part.step", "far/wall.stl", "far/way.csv", "far/n.vtk", "far/other.stl",
+                             "one.csv", "two.csv", "far/middle.toml"}) {
+        CAPTURE(file);
+        for (const char* text : {"robot = \"base.toml\"\n#1", "robot = \"base.toml\"\n#2"}) {
+            REQUIRE(write_file(folder / file, text));
+            const std::string now = fingerprint();
+            CHECK(now != last);
+            CHECK(now == fingerprint());
+            last = now;
+        }
+    }
+    REQUIRE(write_file(folder / "far/stranger.vtk", "of another robot"));
+    CHECK(fingerprint() == last);
+}

@@ -1,10 +1,12 @@
 #include "robot/file/robot_document.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -157,55 +159,123 @@ Status set_all(config::Document& document, const std::vector<std::string>& assig
     return {};
 }
 
-Result<std::optional<std::string>> base_text(std::string_view text, const fs::path& file) {
-    const Result<config::Document> document = config::parse(text, file);
-    if (!document) return tl::unexpected(document.error());
-    const config::Value* named = entry_of(document->root, "robot");
+namespace {
+
+/// The file that the document names as robot = "FILE.toml"; none without that key, or where it is no text.
+std::optional<fs::path> named_base(const config::Document& document) {
+    const config::Value* named = entry_of(document.root, "robot");
     const auto* name = named == nullptr ? nullptr : std::get_if<std::string>(&named->data);
-    if (name == nullptr) return std::nullopt;
-    Result<std::string> base = read_file(beside(file, *name));
-    if (!base) return tl::unexpected(base.error());
-    return std::optional(std::move(*base));
+    return name == nullptr ? std::nullopt : std::optional(beside(document.file, *name));
+}
+
+/// The same for every name of one file.
+fs::path place_of(const fs::path& file) {
+    std::error_code ignored;
+    return fs::weakly_canonical(fs::absolute(file, ignored), ignored);
+}
+
+/// The files of a chain, each of which stands on the next.
+class Chain {
+public:
+    explicit Chain(const fs::path& first) { (void)add(first); }
+    /// False: it is one of them already.
+    bool add(const fs::path& file) {
+        names_.push_back(file.filename().string());
+        return places_.insert(place_of(file)).second;
+    }
+    [[nodiscard]] std::string text() const { return fmt::format("{}", fmt::join(names_, " -> ")); }
+
+private:
+    std::vector<std::string> names_;
+    std::set<fs::path> places_;
+};
+
+/// What a file changes of the robot that it stands on.
+struct Changes {
+    fs::path base;
+    std::vector<std::string> assignments;
+    std::optional<config::Value> program;
+};
+
+Result<Changes> read_changes(const config::Document& document, Chain& chain) {
+    Problems problems(document.file.string());
+    Reader root(document.root, problems);
+    Changes changes{beside(document.file, root.text("robot")), root.texts("set"), std::nullopt};
+    if (const config::Value* program = root.raw("program")) changes.program = *program;
+    if (changes.program && !std::holds_alternative<config::Table>(changes.program->data))
+        root.problem("program", "must be a table");
+    if (!root.unreadable("robot") && !chain.add(changes.base))
+        root.problem("robot", "stands on itself: " + chain.text());
+    root.finish();
+    if (Status status = problems.status(); !status) return tl::unexpected(status.error());
+    return changes;
+}
+
+Status apply(config::Document& document, Changes changes) {
+    if (Status status = set_all(document, changes.assignments); !status) return status;
+    if (!changes.program) return {};
+    forget_lines(*changes.program);
+    auto& table = std::get<config::Table>(document.root.data);
+    const auto there =
+        std::find_if(table.begin(), table.end(), [](const config::Entry& entry) { return entry.first == "program"; });
+    if (there == table.end())
+        table.emplace_back("program", *std::move(changes.program));
+    else if (auto* theirs = std::get_if<config::Table>(&there->second.data))
+        put_over(*theirs, std::get<config::Table>(std::move(changes.program->data)));
+    return {};
+}
+
+}  // namespace
+
+Result<std::optional<std::string>> base_text(std::string_view text, const fs::path& file) {
+    Result<config::Document> document = config::parse(text, file);
+    std::optional<std::string> all;
+    Chain chain(file);
+    while (document) {
+        const std::optional<fs::path> base = named_base(*document);
+        if (!base || !chain.add(*base)) return all;
+        const Result<std::string> next = read_file(*base);
+        if (!next) return tl::unexpected(next.error());
+        all = all ? *all + "\nstands on\n" + *next : *next;
+        document = config::parse(*next, *base);
+    }
+    return tl::unexpected(document.error());
 }
 
 std::vector<fs::path> files_of(const fs::path& file, const std::vector<std::string>& assignments) {
     std::vector<fs::path> files = {file};
-    Result<config::Document> document = config::load(file);
-    if (!document) return files;
-    const config::Value* base = entry_of(document->root, "robot");
-    const auto* name = base == nullptr ? nullptr : std::get_if<std::string>(&base->data);
-    if (name != nullptr) files.push_back(beside(file, *name));
-    document = on_base(std::move(*document));
-    if (!document || !set_all(*document, assignments)) return files;
-    add_paths(document->root, document->file.parent_path(), files);
+    const Result<config::Document> first = config::load(file);
+    Chain chain(file);
+    for (Result<config::Document> at = first; at; at = config::load(files.back())) {
+        const std::optional<fs::path> base = named_base(*at);
+        if (!base || !chain.add(*base)) break;
+        files.push_back(*base);
+    }
+    if (!first) return files;
+    Result<BasedDocument> based = on_base(*first);
+    if (!based || !set_all(based->document, assignments)) return files;
+    add_paths(based->document.root, based->document.file.parent_path(), files);
     return files;
 }
 
-Result<config::Document> on_base(config::Document document) {
-    Problems problems(document.file.string());
-    Reader root(document.root, problems);
-    if (!root.has("robot")) return document;
-    const fs::path file = beside(document.file, root.text("robot"));
-    const std::vector<std::string> changes = root.texts("set");
-    const config::Value* program = root.raw("program");
-    if (program != nullptr && !std::holds_alternative<config::Table>(program->data))
-        root.problem("program", "must be a table");
-    root.finish();
-    if (Status status = problems.status(); !status) return tl::unexpected(status.error());
-    Result<config::Document> base = config::load(file);
-    if (!base) return tl::unexpected(base.error());
-    if (Status status = set_all(*base, changes); !status) return tl::unexpected(status.error());
-    auto& table = std::get<config::Table>(base->root.data);
-    if (program == nullptr) return base;
-    config::Value own = *program;
-    forget_lines(own);
-    const auto there =
-        std::find_if(table.begin(), table.end(), [](const config::Entry& entry) { return entry.first == "program"; });
-    if (there == table.end())
-        table.emplace_back("program", std::move(own));
-    else if (auto* theirs = std::get_if<config::Table>(&there->second.data))
-        put_over(*theirs, std::get<config::Table>(std::move(own.data)));
-    return base;
+Result<BasedDocument> on_base(config::Document document) {
+    BasedDocument based;
+    std::vector<Changes> above;
+    Chain chain(document.file);
+    while (entry_of(document.root, "robot") != nullptr) {
+        Result<Changes> changes = read_changes(document, chain);
+        if (!changes) return tl::unexpected(changes.error());
+        Result<config::Document> base = config::load(changes->base);
+        if (!base) return tl::unexpected(base.error());
+        based.has_other_program = based.has_other_program || changes->program;
+        above.push_back(std::move(*changes));
+        document = std::move(*base);
+    }
+    based.document = std::move(document);
+    for (; !above.empty(); above.pop_back())
+        if (Status status = apply(based.document, std::move(above.back())); !status)
+            return tl::unexpected(status.error());
+    return based;
 }
 
 namespace {
@@ -214,10 +284,11 @@ namespace {
 Result<config::Document> whole_document(std::string_view text, const fs::path& file,
                                         const std::vector<std::string>& assignments) {
     Result<config::Document> document = config::parse(text, file);
-    if (document) document = on_base(std::move(*document));
     if (!document) return document;
-    if (Status status = set_all(*document, assignments); !status) return tl::unexpected(status.error());
-    return document;
+    Result<BasedDocument> based = on_base(std::move(*document));
+    if (!based) return tl::unexpected(based.error());
+    if (Status status = set_all(based->document, assignments); !status) return tl::unexpected(status.error());
+    return std::move(based->document);
 }
 
 }  // namespace

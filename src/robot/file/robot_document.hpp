@@ -16,15 +16,22 @@ namespace pliant::robot {
 /// The value of a key of a table; null if there is none.
 [[nodiscard]] const config::Value* entry_of(const config::Value& value, std::string_view key);
 
-/// Of robot = "FILE.toml" that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of
-/// what it says there. Without that key the document as it is. Errors: of either file; any other key beside those.
-[[nodiscard]] Result<config::Document> on_base(config::Document document);
+/// A robot with what the files say that stand on it.
+struct BasedDocument {
+    config::Document document;
+    bool has_other_program = false;  ///< a file that stands on the robot has a [program] of its own
+};
 
-/// `text` is that of `file`. The text of the robot that it names as robot = "FILE.toml"; none without that key. Errors:
-/// of the text; the named file cannot be read.
+/// Of robot = "FILE.toml" that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of
+/// what it says there; that file may stand on another one in turn, and so on. Without that key the document as it is.
+/// Errors: of any of the files; any other key beside those; a file that stands on itself.
+[[nodiscard]] Result<BasedDocument> on_base(config::Document document);
+
+/// `text` is that of `file`. The texts of the robot that it names as robot = "FILE.toml" and of those that this stands
+/// on; none without that key. Errors: of the texts; a named file cannot be read.
 [[nodiscard]] Result<std::optional<std::string>> base_text(std::string_view text, const std::filesystem::path& file);
 
-/// What a robot is read from, as far as it is there: the file, the one that it stands on, and the files that these and
+/// What a robot is read from, as far as it is there: the file, those that it stands on, and the files that these and
 /// the assignments name. What cannot be read names none.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const std::filesystem::path& file,
                                                           const std::vector<std::string>& assignments);

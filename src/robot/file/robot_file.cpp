@@ -41,12 +41,6 @@ bool has_time_step(const config::Value& root) {
     return program != nullptr && entry_of(*program, "time_step") != nullptr;
 }
 
-/// The goals are those of another file, whose program is not this one: their times are of that program. So it is where
-/// a search for goals has written its answer.
-bool has_program_of_its_own(const config::Value& root) {
-    return entry_of(root, "robot") != nullptr && entry_of(root, "program") != nullptr;
-}
-
 /// Of keys, among which are names of materials and shapes, and of every `name`: a line break in one would end a comment
 /// or a row of the files that it is written to.
 void refuse_control_characters(const config::Value& value, const std::string& path, Problems& problems) {
@@ -69,10 +63,9 @@ void refuse_control_characters(const config::Value& value, const std::string& pa
 }
 
 Result<Robot> read_robot(config::Document given, const std::vector<std::string>& assignments) {
-    const bool goals_of_this_program = !has_program_of_its_own(given.root);
-    Result<config::Document> based = on_base(std::move(given));
+    Result<BasedDocument> based = on_base(std::move(given));
     if (!based) return tl::unexpected(based.error());
-    config::Document& document = *based;
+    config::Document& document = based->document;
     if (Status status = set_all(document, assignments); !status) return tl::unexpected(status.error());
     if (Status status = config::resolve_parameters(document); !status) return tl::unexpected(status.error());
 
@@ -100,7 +93,9 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     read_sensors(root, context);
     read_goals(root, context);
     read_program(root, context);
-    if (goals_of_this_program) check_goal_times(root, robot);
+    // The times of goals are of the robot's own program. Where a search for goals has written its answer, and in every
+    // other file that stands on the robot with a program, they are of none that runs.
+    if (!based->has_other_program) check_goal_times(root, robot);
     if (robot.fixed.empty() && !root.unreadable("fixed") && !may_be_free(robot))
         root.problem("",
                      "nothing is fixed; add [[fixed]] with a box that holds one end of the robot, an [[obstacle]] to "

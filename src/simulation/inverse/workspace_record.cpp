@@ -28,8 +28,8 @@ WorkspaceSample read_sample(cbor::Reader& outer, const Json& map) {
 
 }  // namespace
 
-std::string piece_bytes(const WorkspacePiece& piece) {
-    Json map = {{"rows", piece.rows}, {"columns", piece.columns}, {"samples", Json::array()}};
+std::string piece_bytes(const WorkspacePiece& piece, const std::string& identity) {
+    Json map = {{"of", identity}, {"rows", piece.rows}, {"columns", piece.columns}, {"samples", Json::array()}};
     for (const WorkspaceSample& sample : piece.samples) {
         map["samples"].push_back({{"values", packed(sample.values)},
                                   {"found", sample.found},
@@ -37,13 +37,15 @@ std::string piece_bytes(const WorkspacePiece& piece) {
                                   {"tensions", packed(sample.tensions_N)},
                                   {"pressures", packed(sample.pressures_Pa)}});
     }
-    const std::vector<std::uint8_t> bytes = Json::to_cbor(map);
-    return {bytes.begin(), bytes.end()};
+    return cbor::sealed(map);
 }
 
-Result<WorkspacePiece> piece_from_bytes(std::string_view bytes) {
-    const Json map = cbor::parsed(bytes);
+Result<WorkspacePiece> piece_from_bytes(std::string_view bytes, const std::string& identity) {
+    const Result<std::string_view> content = cbor::unsealed(bytes);
+    if (!content) return tl::unexpected(content.error());
+    const Json map = cbor::parsed(*content);
     cbor::Reader reader(map);
+    if (reader.text("of") != identity) reader.fail("a piece of another search");
     constexpr int most = std::numeric_limits<int>::max();
     WorkspacePiece piece{reader.integer("rows", 0, most), reader.integer("columns", 0, most), {}};
     const Json& samples = reader.at("samples");

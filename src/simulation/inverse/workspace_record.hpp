@@ -9,8 +9,9 @@
 
 namespace pliant::sim::inverse {
 
-[[nodiscard]] std::string piece_bytes(const WorkspacePiece& piece);
-/// Errors: damaged.
-[[nodiscard]] Result<WorkspacePiece> piece_from_bytes(std::string_view bytes);
+/// With a checksum. `identity`: of which search it is, and which of its pieces.
+[[nodiscard]] std::string piece_bytes(const WorkspacePiece& piece, const std::string& identity);
+/// Errors: damaged; of another identity.
+[[nodiscard]] Result<WorkspacePiece> piece_from_bytes(std::string_view bytes, const std::string& identity);
 
 }  // namespace pliant::sim::inverse

@@ -92,8 +92,8 @@ TEST_CASE("a resumed search gives the same bits") {
 
 TEST_CASE("a piece is unchanged by serialisation, and damaged bytes are an error") {
     const WorkspacePiece piece{1, 2, {{{0.9, 1e-300}, true, {{1, 2, 3}}, {0.1}, {}}, {{0.8, 2}, false, {}, {}, {}}}};
-    const std::string bytes = piece_bytes(piece);
-    const auto read = piece_from_bytes(bytes);
+    const std::string bytes = piece_bytes(piece, "search 3");
+    const auto read = piece_from_bytes(bytes, "search 3");
     REQUIRE(read);
     CHECK(read->rows == 1);
     CHECK(read->columns == 2);
@@ -102,6 +102,14 @@ TEST_CASE("a piece is unchanged by serialisation, and damaged bytes are an error
     CHECK(read->samples[0].markers == piece.samples[0].markers);
     CHECK(read->samples[0].tensions_N == piece.samples[0].tensions_N);
     CHECK_FALSE(read->samples[1].found);
-    for (std::size_t size = 0; size < bytes.size(); ++size) CHECK_FALSE(piece_from_bytes(bytes.substr(0, size)));
-    CHECK_FALSE(piece_from_bytes("robot"));
+    CHECK_FALSE(piece_from_bytes(bytes, "search 4"));
+    CHECK_FALSE(piece_from_bytes(bytes, "another 3"));
+    for (std::size_t size = 0; size < bytes.size(); ++size)
+        CHECK_FALSE(piece_from_bytes(bytes.substr(0, size), "search 3"));
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+        std::string changed = bytes;
+        changed[at] = static_cast<char>(changed[at] ^ 4);
+        CHECK_FALSE(piece_from_bytes(changed, "search 3"));
+    }
+    CHECK_FALSE(piece_from_bytes("robot", "search 3"));
 }

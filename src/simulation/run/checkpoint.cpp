@@ -117,20 +117,16 @@ Status read_steps(const fs::path& file, std::uintmax_t bytes, std::size_t count,
 }  // namespace
 
 Result<Checkpoint> Checkpoint::create(const fs::path& folder, std::string origin, int every) {
-    std::error_code code;
-    if (!may_replace_folder(folder, steps_name))
-        return input_error_at(folder.string(), 0, "is there already, and is not a checkpoint; move it away");
-    fs::remove_all(folder, code);
-    fs::create_directories(folder, code);
-    if (code) return failure("{}: cannot be made: {}", folder.string(), code.message());
-    std::ofstream steps(folder / steps_name, std::ios::binary);
-    if (!steps) return failure("{}: cannot be written", (folder / steps_name).string());
-    return Checkpoint(folder, std::move(origin), every);
+    Result<CheckpointFolder> own = CheckpointFolder::create(folder, steps_name);
+    if (!own) return tl::unexpected(own.error());
+    if (Status status = own->write(steps_name, ""); !status) return tl::unexpected(status.error());
+    return Checkpoint(std::move(*own), std::move(origin), every);
 }
 
 Status Checkpoint::keep(const Model& model, const RunState& run) {
     const Trajectory& all = run.so_far;
-    std::ofstream file(folder_ / steps_name, std::ios::binary | std::ios::app);
+    const fs::path steps = folder_.path() / steps_name;
+    std::ofstream file(steps, std::ios::binary | std::ios::app);
     std::uintmax_t bytes = bytes_;
     std::size_t iterations = iterations_;
     for (std::size_t k = steps_; k < all.steps.size(); ++k) {
@@ -145,7 +141,9 @@ Status Checkpoint::keep(const Model& model, const RunState& run) {
         iterations = last;
     }
     file.close();
-    if (!file) return failure("{}: cannot be written; is the disk full?", (folder_ / steps_name).string());
+    if (!file) return failure("{}: cannot be written; is the disk full?", steps.string());
+    // Before the state that counts on them: a power cut may otherwise leave the state alone.
+    if (Status status = folder_.sync(steps_name); !status) return status;
     const std::string robot = state_bytes(model, run.robot);
     const Json json{{"format", format_name},
                     {"version", version},
@@ -161,7 +159,7 @@ Status Checkpoint::keep(const Model& model, const RunState& run) {
                     {"crossings", crossings_of(all.steps)},
                     {"checks", json_of_checks(run.checks)},
                     {"robot", Json::binary({robot.begin(), robot.end()})}};
-    if (Status status = write_file(folder_ / state_name, cbor::sealed(json)); !status) return status;
+    if (Status status = folder_.write(state_name, cbor::sealed(json)); !status) return status;
     bytes_ = bytes;
     steps_ = all.steps.size();
     iterations_ = iterations;
@@ -172,12 +170,14 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
                                              const Program& program) {
     const fs::path state = folder / state_name;
     std::error_code code;
-    if (!fs::exists(state, code) && fs::exists(folder / steps_name, code))
-        return input_error_at(folder.string(), 0,
-                              "the run ended before its first checkpoint; there is nothing to resume");
-    if (!fs::exists(state, code))
+    if (!fs::exists(state, code) && !fs::exists(folder / steps_name, code))
         return input_error_at(folder.string(), 0,
                               "no checkpoint is there; a run makes one where it is told to keep checkpoints");
+    Result<CheckpointFolder> own = CheckpointFolder::open(folder, steps_name);
+    if (!own) return tl::unexpected(own.error());
+    if (!fs::exists(state, code))
+        return input_error_at(folder.string(), 0,
+                              "the run ended before its first checkpoint; there is nothing to resume");
     const auto text = read_file(state);
     if (!text) return tl::unexpected(text.error());
     const auto wrong = [&](const std::string& why) { return input_error_at(state.string(), 0, "{}", why); };
@@ -218,17 +218,11 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
     if (!in.status()) return wrong(in.status().error().message);
     fs::resize_file(folder / steps_name, bytes, code);
     if (code) return failure("{}: cannot be written: {}", (folder / steps_name).string(), code.message());
-    Checkpoint checkpoint(folder, std::move(origin), every);
+    Checkpoint checkpoint(std::move(*own), std::move(origin), every);
     checkpoint.bytes_ = bytes;
     checkpoint.steps_ = run.so_far.steps.size();
     checkpoint.iterations_ = run.so_far.iterations.size();
     return Resumed{std::move(checkpoint), std::move(run)};
-}
-
-Status Checkpoint::remove() const {
-    std::error_code code;
-    fs::remove_all(folder_, code);
-    return code ? Status(failure("{}: cannot be deleted: {}", folder_.string(), code.message())) : Status{};
 }
 
 }  // namespace pliant::sim

@@ -318,3 +318,32 @@ TEST_CASE("a checkpoint with any byte changed is refused") {
         CHECK(Checkpoint::open(path, "test", p.model, p.program).has_value() == same);
     }
 }
+
+TEST_CASE("the checkpoint of a run at work is neither replaced nor resumed by another, and not deleted later") {
+    const Problem p = blown_up(1);
+    const pliant::test::Folder folder;
+    const auto path = folder / "run";
+    const std::string refusal = path.string() + ": another process is at work on this checkpoint";
+    const auto error_of = [](const auto& result) { return result ? std::string() : result.error().message; };
+    auto checkpoint = Checkpoint::create(path, "test", 1);
+    REQUIRE(checkpoint);
+    RunOptions options;
+    options.on_checkpoint = [&](const RunState& run) -> Status {
+        if (Status status = checkpoint->keep(p.model, run); !status) return status;
+        if (run.step != 3) return {};
+        CHECK(error_of(Checkpoint::create(path, "other", 1)).starts_with(refusal));
+        CHECK(error_of(Checkpoint::open(path, "test", p.model, p.program)).starts_with(refusal));
+        return {};
+    };
+    CHECK(run_silently(p.model, p.program, std::move(options)).converged);
+    checkpoint->release();
+    {
+        const auto resumed = Checkpoint::open(path, "test", p.model, p.program);
+        REQUIRE_MESSAGE(resumed, (resumed ? "" : resumed.error().message));
+        CHECK(resumed->run.step == p.program.steps);
+        CHECK(checkpoint->remove());
+        CHECK(std::filesystem::exists(path / "state"));
+    }
+    CHECK(checkpoint->remove());
+    CHECK_FALSE(std::filesystem::exists(path));
+}

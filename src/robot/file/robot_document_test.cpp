@@ -1,0 +1,105 @@
+// Robot files that stand on others.
+#include "robot/file/robot_document.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
+#include "robot/description/robot.hpp"
+#include "robot/file/robot_file.hpp"
+
+using namespace pliant;
+using namespace pliant::robot;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string leaning = R"(
+    name = "bar"
+    length_unit = "mm"
+    material.soft = { youngs_modulus = "1 MPa" }
+    body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [40, 10, 10]] } }]
+    fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
+    marker = [{ name = "tip", point = [40, 5, 5] }]
+    cable = [{ name = "up", points = [[0, 5, 9], [40, 5, 9]], target.shortening = "4 mm", range = ["0 mm", "8 mm"] }]
+    goal = [{ name = "reach", marker = "tip", times = [1], plane = { point = [0, 0, 8], normal = [0, 0, 1] } }]
+    mesh = { size = "5 mm" }
+    program = { steps = 7, tolerance = 1e-5 }
+)";
+
+/// Three files, each in a folder of its own, of which each stands on the next.
+void write_chain(const test::Folder& folder) {
+    for (const char* name : {"a", "b", "c"}) fs::create_directories(folder / name);
+    REQUIRE(write_file(folder / "c/c.toml", leaning));
+    REQUIRE(write_file(folder / "b/b.toml",
+                       "robot = \"../c/c.toml\"\nset = [\"mesh.size=6 mm\", \"name=b\"]\n[program]\nsteps = 8\n"
+                       "max_iterations = 50\n"));
+    REQUIRE(write_file(folder / "a/a.toml",
+                       "robot = \"../b/b.toml\"\nset = [\"program.steps=12\", \"name=a\"]\n[program]\nsteps = 9\n"));
+}
+
+}  // namespace
+
+TEST_CASE("files stand on each other in a chain, and each changes what the next one says") {
+    const test::Folder folder("chain");
+    write_chain(folder);
+    const auto robot = load_robot(folder / "a/a.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->name == "a");
+    CHECK(robot->program.steps == 9);
+    CHECK(robot->program.iteration_limit == 50);
+    CHECK(robot->program.tolerance == 1e-5);
+    CHECK(robot->file == folder / "c/c.toml");
+    CHECK(load_robot(folder / "b/b.toml")->program.steps == 8);
+    CHECK(load_robot(folder / "a/a.toml", {"program.steps=3"})->program.steps == 3);
+    CHECK(files_of(folder / "a/a.toml", {}) ==
+          std::vector<fs::path>{folder / "a/a.toml", folder / "b/b.toml", folder / "c/c.toml"});
+    const auto texts = base_text(read_file(folder / "a/a.toml").value(), folder / "a/a.toml");
+    REQUIRE(texts);
+    REQUIRE(*texts);
+    CHECK((*texts)->find("mesh.size=6 mm") != std::string::npos);
+    CHECK((*texts)->find("name = \"bar\"") != std::string::npos);
+    const auto whole = robot_text(read_file(folder / "a/a.toml").value(), folder / "a/a.toml", {}, folder.path());
+    REQUIRE(whole);
+    REQUIRE(write_file(folder / "whole.toml", *whole));
+    CHECK(load_robot(folder / "whole.toml")->program.iteration_limit == 50);
+}
+
+TEST_CASE("the goals of a robot at the end of a chain have the times of its own program") {
+    const test::Folder folder("chain");
+    write_chain(folder);
+    REQUIRE(write_file(folder / "b/b.toml", "robot = \"../c/c.toml\"\n[program]\nduration = \"0.5 s\"\n"));
+    REQUIRE(write_file(folder / "a/a.toml", "robot = \"../b/b.toml\"\n"));
+    for (const char* file : {"b/b.toml", "a/a.toml"}) {
+        const auto robot = load_robot(folder / file);
+        CHECK_MESSAGE(robot, (robot ? "" : robot.error().message));
+    }
+}
+
+TEST_CASE("files that stand on each other in a circle are refused in one line") {
+    const test::Folder folder("chain");
+    write_chain(folder);
+    REQUIRE(write_file(folder / "c/c.toml", "robot = \"../a/a.toml\"\n"));
+    const auto robot = load_robot(folder / "a/a.toml");
+    REQUIRE_FALSE(robot);
+    CHECK(robot.error().message ==
+          (folder / "c/c.toml").string() + ":1: robot: stands on itself: a.toml -> b.toml -> c.toml -> a.toml");
+    CHECK(files_of(folder / "a/a.toml", {}).size() == 3);
+    CHECK(base_text(read_file(folder / "a/a.toml").value(), folder / "a/a.toml"));
+    REQUIRE(write_file(folder / "b/b.toml", "robot = \"b.toml\"\n"));
+    CHECK(load_robot(folder / "a/a.toml").error().message ==
+          (folder / "b/b.toml").string() + ":1: robot: stands on itself: a.toml -> b.toml -> b.toml");
+}
+
+TEST_CASE("a mistake in the middle of a chain is told of the file that has it") {
+    const test::Folder folder("chain");
+    write_chain(folder);
+    REQUIRE(write_file(folder / "b/b.toml", "robot = \"../c/c.toml\"\nname = \"b\"\n"));
+    CHECK(load_robot(folder / "a/a.toml").error().message.starts_with((folder / "b/b.toml").string() + ":2: name: "));
+    REQUIRE(write_file(folder / "b/b.toml", "robot = \"../c/none.toml\"\n"));
+    CHECK(load_robot(folder / "a/a.toml").error().message.starts_with((folder / "c/none.toml").string() + ": "));
+}
