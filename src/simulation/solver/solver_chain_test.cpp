@@ -221,6 +221,19 @@ TEST_CASE("auto: a step that needs more iterations is finished by the other solv
     CHECK(helped.steps.back().cables[0].tension_N == near(alone.steps.back().cables[0].tension_N, {.relative = 1e-3}));
 }
 
+/// The free end of the bar as a plate.
+Description with_plate(Description d) {
+    d.plates = {{"end", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; })}};
+    return d;
+}
+
+TEST_CASE("a plate is as accurate as rounding errors of its stiff springs allow") {
+    Description d = with_plate(testing::bar(2, material::neo_hookean(1e6, 0.4999)));
+    d.gravity_m_s2 = {0, 0, -9.81};
+    const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-9});
+    REQUIRE_MESSAGE(result.converged, result.message);
+}
+
 TEST_CASE("every iteration is recorded with the state it led to") {
     for (const Solver solver : {Solver::newton, Solver::anderson}) {
         const Trajectory result = solve(pulled_bar(0.9), {.steps = 3, .tolerance = 1e-6, .solver = solver});
