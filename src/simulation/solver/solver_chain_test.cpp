@@ -227,6 +227,15 @@ Description with_plate(Description d) {
     return d;
 }
 
+TEST_CASE("auto: a law without an energy, with a plate") {
+    Description d = with_plate(testing::bar(2, material::shape_blend(1e6, 0.45)));
+    d.gravity_m_s2 = {0, 0, -9.81};
+    const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-6});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    CHECK(result.steps.back().solver == Solver::newton);
+    CHECK(result.steps.back().iterations < 30);
+}
+
 TEST_CASE("a plate is as accurate as rounding errors of its stiff springs allow") {
     Description d = with_plate(testing::bar(2, material::neo_hookean(1e6, 0.4999)));
     d.gravity_m_s2 = {0, 0, -9.81};
