@@ -32,6 +32,8 @@ public:
     /// result (3n) += the transpose of that product with `weights` (3n) of the forces.
     void add_rest_weights(std::span<const double> x, std::span<const double> weights, std::span<double> result) const;
     void append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const;
+    [[nodiscard]] std::size_t node_count() const { return nodes_.size(); }
+    [[nodiscard]] double stiffness_N_m() const { return stiffness_; }
 
 private:
     struct Pose {

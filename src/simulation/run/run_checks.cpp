@@ -26,6 +26,12 @@ constexpr double noticeable = 0.01;  // of the robot's size, as a mean of all no
 constexpr double long_first = 0.03;  // likewise, for the first step, which has no step to compare with
 constexpr int most_pushes = 5;
 constexpr double extremely_soft = 100;  // a shape parameter
+constexpr std::string_view not_left = "along its softest motion led to no stable one";
+
+bool are_told(const std::vector<std::string>& warnings, std::string_view what) {
+    return std::ranges::any_of(warnings,
+                               [&](const std::string& warning) { return warning.find(what) != std::string::npos; });
+}
 
 /// What acts from the first instant on, as a stretched spring, a load that begins at once or the offset of a drive: the
 /// robot leaps to it by the wish of the program's author. On the path from rest to the first step it grows from
@@ -86,6 +92,9 @@ void RunChecks::after_step(RobotState& robot, Step& step, StepReport& report, st
                 fmt::format("at step {} the equilibrium is unstable; a push of {:.3g} mm along its softest motion led "
                             "to a stable one",
                             step.index, 1e3 * program_.imperfection_m));
+        else if (motion && !progress.cancelled() && !are_told(warnings, not_left))
+            warnings.push_back(fmt::format("at step {} the equilibrium is unstable, and a push of {:.3g} mm or more {}",
+                                           step.index, 1e3 * program_.imperfection_m, not_left));
     }
     state_.reported = robot.now;
 }
@@ -148,8 +157,7 @@ void RunChecks::warn_of_uncarried_loads(const RobotState& robot, int step, std::
     const double largest = std::max((now.out_of_balance + loads).norm(), loads.norm());
     const double open = system_.restrict_to_free(now.out_of_balance).norm();
     if (!(open > std::max(noticeable_share, 2 * program_.tolerance) * largest)) return;
-    const auto says_so = [&](const std::string& warning) { return warning.find(what) != std::string::npos; };
-    if (std::ranges::any_of(warnings, says_so)) return;
+    if (are_told(warnings, what)) return;
     warnings.push_back(
         fmt::format("from step {} on {}: {:.2g} % of the forces are out of balance, and too small beside the stiffest "
                     "material to be told from rounding errors; bring the moduli nearer to each other, or leave out "
@@ -180,7 +188,9 @@ void RunChecks::warn_of_open_places(const RobotState& robot, Trajectory& result)
 
 void RunChecks::at_end(const RobotState& robot, Trajectory& result) {
     warn_of_open_places(robot, result);
-    if (!program_.checks || program_.dynamics || program_.imperfection_m > 0 || result.steps.size() < 2) return;
+    const bool pushed = program_.imperfection_m > 0;  // then each step was checked, and what is unstable was left
+    if (!program_.checks || program_.dynamics || result.steps.size() < 2) return;
+    if (pushed && !are_told(result.warnings, not_left)) return;
     stepper_.release();  // the check of stability makes a factor of its own, of the same size
     std::vector<std::size_t> suspects = state_.before_jump;
     suspects.push_back(result.steps.size() - 1);
@@ -194,8 +204,9 @@ void RunChecks::at_end(const RobotState& robot, Trajectory& result) {
         const bool jumps = suspect + 1 < result.steps.size();
         result.warnings.push_back(fmt::format(
             "from step {} on the equilibrium is unstable{}: a real robot buckles or tips to one side where this "
-            "one stays in balance; program.imperfection follows the stable way",
-            unstable, jumps ? fmt::format(", until the robot jumps in step {}", suspect + 1) : ""));
+            "one stays in balance; {}program.imperfection follows the stable way",
+            unstable, jumps ? fmt::format(", until the robot jumps in step {}", suspect + 1) : "",
+            pushed ? "perhaps another " : ""));
         return;
     }
 }

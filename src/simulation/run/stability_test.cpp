@@ -114,6 +114,16 @@ TEST_CASE("with an imperfection the column buckles sideways as far as the elasti
     CHECK_MESSAGE(aside == near(0.593, {.relative = 0.05}), aside);
 }
 
+TEST_CASE("an unstable equilibrium that no push leaves is reported") {
+    Program program;
+    program.steps = 13;
+    program.imperfection_m = 1e-15;
+    const Trajectory result = testing::solve(column(1.3 * critical_load()), program);
+    REQUIRE_MESSAGE(result.converged, said(result));
+    CHECK_MESSAGE(warns(result, "led to no stable one"), said(result));
+    CHECK_MESSAGE(first_unstable(result, 1.3) > 0.9, said(result));
+}
+
 TEST_CASE("a column shortened by a guided cable along its axis is not reported as unstable") {
     // Pulled to a fixed length by a cable along its axis it is under a load that is not given but follows; sideways the
     // cable keeps the line to its end, so that it does not buckle as under a dead load: a guide in the middle of every

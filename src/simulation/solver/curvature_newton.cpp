@@ -1,3 +1,4 @@
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -75,8 +76,12 @@ public:
         return straight_ ? end : laplacian_->rotate(*system_, {.now = x.data(), .end = end.data()});
     }
 
+    /// Without the skew part of torques, which solve_with_torques() adds.
     void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override {
-        learnt_ = std::make_shared<const StepPair>(StepPair{step, change});
+        StepPair pair{step, change};
+        if (torques_.turns.cols() > 0)
+            pair.change -= torques_.turns * (torques_.skew * (torques_.turns.transpose() * step));
+        learnt_ = std::make_shared<const StepPair>(std::move(pair));
     }
 
     /// Without a tangent there is nothing to carry over. What is left of an earlier program, as the last rotation, must
@@ -141,17 +146,18 @@ public:
     }
 
     void solve(Eigen::MatrixXd& columns) override {
-        if (!system_->has_skew()) {
-            rotation_.pull_back_forces(columns);
-            memory_.apply(columns, [&](Eigen::MatrixXd& c) { solve_with_inverse(c); });
-            rotation_.push_forward_motions(columns);
-            return;
+        torques_ = system_->torque_skew(*at_.state, *at_.controls);
+        if (system_->has_skew()) {
+            for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
+        } else if (torques_.turns.cols() > 0) {
+            solve_with_torques(columns);
+        } else {
+            solve_symmetric(columns);
         }
-        for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
     }
 
     [[nodiscard]] const Yielding* yielding_to(const Forces& forces) override {
-        if (!usable_ || system_->has_skew()) return nullptr;
+        if (!usable_ || system_->has_skew() || system_->has_torques()) return nullptr;
         const YieldingOf of{tangent_, share_, inverse_->memory().in_double, forces.actuators};
         if (of == yielding_of_) return &yielding_;
         yielding_of_ = {};
@@ -172,7 +178,8 @@ public:
     [[nodiscard]] std::optional<Constrained> solve_constrained(const Eigen::VectorXd& force,
                                                                const Eigen::MatrixXd& normals,
                                                                const Eigen::VectorXd& wanted) override {
-        if (reused_ || system_->has_skew() || !inverse_->takes_constraints()) return std::nullopt;
+        if (reused_ || system_->has_skew() || system_->has_torques() || !inverse_->takes_constraints())
+            return std::nullopt;
         using Outcome = TangentInverse::Outcome;
         Constrained found;
         for (;;) {
@@ -242,6 +249,26 @@ private:
         learnt_.reset();
         rotation_.pull_back_step(step, change);
         memory_.learn(step, change);
+    }
+
+    void solve_symmetric(Eigen::MatrixXd& columns) {
+        rotation_.pull_back_forces(columns);
+        memory_.apply(columns, [&](Eigen::MatrixXd& c) { solve_with_inverse(c); });
+        rotation_.push_forward_motions(columns);
+    }
+
+    /// With the skew part of torques, which is of low rank, by the identity of Woodbury. Beside the resistance to their
+    /// rotations it is not small where they bend a body far: about equal to it at a right angle.
+    void solve_with_torques(Eigen::MatrixXd& columns) {
+        const Eigen::MatrixXd& turns = torques_.turns;
+        Eigen::MatrixXd all(columns.rows(), columns.cols() + turns.cols());
+        all << columns, turns;
+        solve_symmetric(all);
+        columns = all.leftCols(columns.cols());
+        const Eigen::MatrixXd yielding = all.rightCols(turns.cols());
+        const Eigen::MatrixXd system =
+            Eigen::MatrixXd::Identity(turns.cols(), turns.cols()) + torques_.skew * (turns.transpose() * yielding);
+        columns -= yielding * system.partialPivLu().solve(torques_.skew * (turns.transpose() * columns)).eval();
     }
 
     void solve_with_inverse(Eigen::MatrixXd& columns) {
@@ -336,8 +363,10 @@ private:
         };
         const auto multiply = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
             const Eigen::VectorXd w = precondition(v);
-            if (share_ == 0 || cautious_) return v + system_->apply_skew(tangent_->state, w);
             Eigen::VectorXd product = system_->apply_skew(tangent_->state, w);
+            if (torques_.turns.cols() > 0)
+                product += torques_.turns * (torques_.skew * (torques_.turns.transpose() * w));
+            if (share_ == 0 || cautious_) return v + product;
             linalg::add_product(layout_->pattern, values_.span(), linalg::view(w), 1, linalg::view(product));
             return product;
         };
@@ -461,6 +490,7 @@ private:
         const State* state;
         const Controls* controls;
     } at_{};                                  ///< the current state, until it is solved
+    Equilibrium::TorqueSkew torques_;         ///< at the state that was solved last
     std::optional<linalg::Nesting> corners_;  ///< of quadratic tets, if they form the second level
     double enough_ = 0;                       ///< error of the next solution
     bool straight_ = false;                   ///< the next step needs no rotation

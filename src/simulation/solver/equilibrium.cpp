@@ -136,7 +136,10 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     const double size = std::cbrt(volume / static_cast<double>(d.mesh.tet_count()));
     const double farthest = rest_.cwiseAbs().maxCoeff();
     force_rounding_ = 1e-16 * stiffest * farthest * size * std::sqrt(static_cast<double>(n));
-    // Rigid things are stiffer: objects, with four nodes each.
+    // Rigid things are stiffer: plates, objects, with four nodes each, and joints.
+    for (const Plate& plate : plates_)
+        force_rounding_ +=
+            1e-16 * plate.stiffness_N_m() * farthest * std::sqrt(static_cast<double>(plate.node_count()));
     for (const AffineBody& object : objects()) force_rounding_ += 2e-16 * object.node_stiffness() * farthest;
     for (const JointForce& joint : joints_) force_rounding_ += 2e-16 * joint.stiffness_N_m() * farthest;
 }

@@ -200,9 +200,15 @@ public:
     /// True if pressure acts on a patch with a free rim: the tangent then has a skew part, which add_tangent leaves
     /// out.
     [[nodiscard]] bool has_skew() const { return !skew_.empty(); }
-    /// Torques have a skew part, too, but a small one if their nodes are stiff: Newton ignores it.
     [[nodiscard]] bool has_torques() const { return !torques_.empty(); }
-    /// (3 free) -> (3 free): the skew part of the tangent times v.
+    /// The skew part of the tangent of torques, turns skew turns^T, in rotations of their nodes as one: these are so
+    /// stiff among themselves that it hardly matters in other motions.
+    struct TorqueSkew {
+        Eigen::MatrixXd turns;  ///< (3 free, k) forces of unit torques about the three axes; k = 0: no torque acts
+        Eigen::MatrixXd skew;   ///< (k, k)
+    };
+    [[nodiscard]] TorqueSkew torque_skew(const State& state, const Controls& controls) const;
+    /// (3 free) -> (3 free): the skew part of the tangent, without that of torques, times v.
     [[nodiscard]] Eigen::VectorXd apply_skew(const State& state, const Eigen::VectorXd& v) const;
 
     [[nodiscard]] const Model& model() const { return *model_; }

@@ -5,6 +5,7 @@
 
 #include "base/core/parallel.hpp"
 #include "base/linalg/vectors.hpp"
+#include "simulation/actuators/cross_matrix.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/equilibrium.hpp"
 
@@ -180,6 +181,34 @@ Eigen::VectorXd Equilibrium::apply_skew(const State& state, const Eigen::VectorX
         actuators_[a].apply_skew(view(state.x), multiplier, view(std::as_const(motion)), view(result));
     }
     return restrict_to_free(result);
+}
+
+/// A torque T on nodes at r_i from their mean, with M = sum r_i r_i^T, changes with their rotation t by -M [w]x t, as
+/// the forces w x r_i turn: their moment is kept. Its skew part is -(M [w]x + [w]x M)/2 = -[T]x/2.
+Equilibrium::TorqueSkew Equilibrium::torque_skew(const State& state, const Controls& controls) const {
+    std::vector<std::size_t> acting;
+    for (std::size_t k = 0; k < torques_.size(); ++k)
+        if (!controls.torque_Nm[k].isZero(0)) acting.push_back(k);
+    TorqueSkew part;
+    if (acting.empty()) return part;
+    double share = 1;
+    if (controls.of_means()) {  // the forces within the step change less than those at its end, where the turns are
+        share = 0;
+        for (const Inertia::Mean& at : controls.inertia->means()) share += at.weight * at.share;
+    }
+    const auto count = static_cast<Eigen::Index>(3 * acting.size());
+    part.turns.resize(3 * model_->free_count(), count);
+    part.skew = Eigen::MatrixXd::Zero(count, count);
+    Eigen::Index column = 0;
+    for (const std::size_t k : acting) {
+        part.skew.block<3, 3>(column, column) = -0.5 * share * cross_matrix(controls.torque_Nm[k]);
+        for (int axis = 0; axis < 3; ++axis) {
+            Eigen::VectorXd forces = Eigen::VectorXd::Zero(state.x.size());
+            torques_[k].subtract_from(view(state.x), -Eigen::Vector3d::Unit(axis), view(forces));
+            part.turns.col(column++) = restrict_to_free(forces);
+        }
+    }
+    return part;
 }
 
 }  // namespace pliant::sim

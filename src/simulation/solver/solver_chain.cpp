@@ -79,7 +79,7 @@ StepOutcome SolverChain::solve(const Equilibrium& system, const Controls& contro
     return outcome;
 }
 
-SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLaplacian& laplacian) {
+SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLaplacian& laplacian, bool in_time) {
     const auto link = [&](Solver solver) -> SolverChain::Link {
         return {solver, [&system, &laplacian, solver] {
                     return solver == Solver::local_global   ? make_local_global(laplacian)
@@ -92,7 +92,10 @@ SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLa
     const bool by_elements = !system.model().description().growths.empty();
     if (by_elements || system.model().elements().has_energy())
         return SolverChain({link(Solver::newton), link(Solver::quasi_newton)});
-    return SolverChain({link(Solver::quasi_newton), link(Solver::anderson)});
+    // The Laplacian that the others start from knows neither plates nor masses.
+    if (in_time || !system.plates().empty())
+        return SolverChain({link(Solver::newton), link(Solver::quasi_newton), link(Solver::anderson)});
+    return SolverChain({link(Solver::quasi_newton), link(Solver::anderson), link(Solver::newton)});
 }
 
 }  // namespace pliant::sim

@@ -45,8 +45,10 @@ private:
     std::vector<std::unique_ptr<Curvature>> made_;  ///< (links)
 };
 
-/// The solver `asked` alone or, for automatic, newton with quasi-newton as fallback; if the laws have no energy and
-/// there are no gap or air elements, quasi-newton with anderson.
-[[nodiscard]] SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLaplacian& laplacian);
+/// The solver `asked` alone or, for automatic, newton with quasi-newton as fallback. If the laws have no energy and
+/// there are no gap or air elements: quasi-newton, then anderson, then newton; newton first if there are plates, or for
+/// steps `in_time`.
+[[nodiscard]] SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLaplacian& laplacian,
+                                     bool in_time = false);
 
 }  // namespace pliant::sim

@@ -221,6 +221,42 @@ TEST_CASE("auto: a step that needs more iterations is finished by the other solv
     CHECK(helped.steps.back().cables[0].tension_N == near(alone.steps.back().cables[0].tension_N, {.relative = 1e-3}));
 }
 
+/// The free end of the bar as a plate.
+Description with_plate(Description d) {
+    d.plates = {{"end", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; })}};
+    return d;
+}
+
+TEST_CASE("auto: a law without an energy, with a plate") {
+    Description d = with_plate(testing::bar(2, material::shape_blend(1e6, 0.45)));
+    d.gravity_m_s2 = {0, 0, -9.81};
+    const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-6});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    CHECK(result.steps.back().solver == Solver::newton);
+    CHECK(result.steps.back().iterations < 30);
+}
+
+TEST_CASE("a plate is as accurate as rounding errors of its stiff springs allow") {
+    Description d = with_plate(testing::bar(2, material::neo_hookean(1e6, 0.4999)));
+    d.gravity_m_s2 = {0, 0, -9.81};
+    const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-9});
+    REQUIRE_MESSAGE(result.converged, result.message);
+}
+
+TEST_CASE("a torque on a plate bends a bar beyond a right angle, in few iterations") {
+    // Its tangent is not symmetric, the more so the further the plate turns.
+    constexpr double inertia_m4 = bar_side * bar_side * bar_side * bar_side / 12;
+    for (const Vec3 axis : {Vec3{0, -1, 0}, Vec3{0.3, 0.2, 1}}) {
+        Description d = with_plate(testing::bar(2, material::neo_hookean(1e6, 0.3)));
+        d.torques = {{"turn", d.plates[0].nodes, 1.75 * 1e6 * inertia_m4 / (4 * bar_side) * axis}};
+        const Trajectory result = solve(d, {.steps = 5, .tolerance = 1e-7, .solver = Solver::newton});
+        REQUIRE_MESSAGE(result.converged, result.message);
+        int iterations = 0;
+        for (const Step& step : result.steps) iterations += step.iterations;
+        CHECK(iterations < 50);
+    }
+}
+
 TEST_CASE("every iteration is recorded with the state it led to") {
     for (const Solver solver : {Solver::newton, Solver::anderson}) {
         const Trajectory result = solve(pulled_bar(0.9), {.steps = 3, .tolerance = 1e-6, .solver = solver});

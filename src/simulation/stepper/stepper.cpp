@@ -96,7 +96,7 @@ Stepper::Stepper(const Model& model, const StepperOptions& options)
       options_(options),
       system_(model),
       laplacian_(system_),
-      solvers_(make_chain(options.solver, system_, laplacian_)),
+      solvers_(make_chain(options.solver, system_, laplacian_, options.dynamics.has_value())),
       units_(system_, options.time_unit) {
     if (options.dynamics)
         motion_.emplace(model, options.dynamics->damping);
