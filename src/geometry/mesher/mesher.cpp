@@ -1,17 +1,51 @@
 #include "geometry/mesher/mesher.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "geometry/mesher/mesh_worker.hpp"
 #include "geometry/mesher/notches.hpp"
 #include "geometry/mesher/packing.hpp"
 #include "geometry/shapes/rod_surface.hpp"
+#include "geometry/shapes/shape_names.hpp"
 
 namespace pliant::mesh {
 namespace {
 
 constexpr const char* crash =
     "the mesher crashed inside Gmsh, Open CASCADE or CGAL; another mesh size or a simpler drawing may pass";
+
+/// The error where round shapes crash it.
+std::string crash_on(const std::string& what) {
+    return fmt::format("the mesher crashed inside Gmsh, Open CASCADE or CGAL on {}; {}, or take another mesh size",
+                       what, advice_on_contact);
+}
+
+std::string crash_on(std::span<const BodyGeometry> bodies) {
+    std::string round;
+    for (const BodyGeometry& body : bodies) {
+        const auto* solid = std::get_if<Solid>(&body.shape);
+        if (solid == nullptr || !has_round_shapes(*solid)) continue;
+        round += fmt::format("{}body \"{}\" ({})", round.empty() ? "" : ", ", body.name, shapes_of({solid, 1}));
+    }
+    return round.empty() ? crash : crash_on(round);
+}
+
+std::string crash_on(const Solid& solid) {
+    return has_round_shapes(solid) ? crash_on(shapes_of({&solid, 1})) : crash;
+}
+
+/// Asks again where the mesher crashes on round shapes: with their seams elsewhere it may not.
+Result<std::string> ask_again(MessageKind kind, const std::string& request, const std::string& crashed,
+                              Progress& progress) {
+    for (std::uint8_t way = 0;; ++way) {
+        Packer whole;
+        whole.number(way);
+        Result<std::string> answer = ask_mesher(kind, request + whole.take(), crashed, progress);
+        if (answer || crashed == crash || way + 1 == seam_ways || !answer.error().message.starts_with(crashed))
+            return answer;
+    }
+}
 
 /// Open CASCADE has tolerances that are lengths: much smaller or larger shapes crash it or Gmsh.
 Status check_extent(std::span<const BodyGeometry> bodies) {
@@ -72,7 +106,7 @@ Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSett
     Packer request;
     pack(request, bodies);
     pack(request, settings);
-    return unpacked<TetMesh>(ask_mesher(MessageKind::mesh_bodies, request.take(), crash, progress));
+    return unpacked<TetMesh>(ask_again(MessageKind::mesh_bodies, request.take(), crash_on(bodies), progress));
 }
 
 Result<TriMesh> tessellate(const Solid& solid, double tolerance, Progress& progress) {
@@ -81,7 +115,7 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance, Progress& progr
     Packer request;
     pack(request, solid);
     request.number(tolerance);
-    return unpacked<TriMesh>(ask_mesher(MessageKind::tessellate, request.take(), crash, progress));
+    return unpacked<TriMesh>(ask_again(MessageKind::tessellate, request.take(), crash_on(solid), progress));
 }
 
 Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
@@ -93,7 +127,7 @@ Result<double> solid_volume(const Solid& solid) {
     Packer request;
     pack(request, solid);
     Progress silent;
-    return unpacked<double>(ask_mesher(MessageKind::volume, request.take(), crash, silent));
+    return unpacked<double>(ask_again(MessageKind::volume, request.take(), crash_on(solid), silent));
 }
 
 Result<std::vector<Notch>> crossed_notches(const TriMesh& surface, const std::vector<Vec3>& path) {

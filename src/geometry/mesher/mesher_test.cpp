@@ -10,6 +10,7 @@
 #include <random>
 
 #include "base/core/near.hpp"
+#include "geometry/mesh/curved_tets.hpp"
 #include "geometry/mesh/mesh_report.hpp"
 #include "geometry/mesh/test_shapes.hpp"
 #include "geometry/repair/surface_check.hpp"
@@ -31,6 +32,13 @@ TetMesh mesh_of(const std::vector<BodyGeometry>& bodies, double size, int order 
     Result<TetMesh> mesh = mesh_bodies(bodies, {.size = size, .order = order}, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     return *mesh;
+}
+
+/// With the curved faces of quadratic tets.
+double round_volume(const TetMesh& mesh, int region = 0) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) sum += mesh.region[t] == region ? curved_volume(mesh, t) : 0;
+    return sum;
 }
 
 std::string problem(const std::vector<BodyGeometry>& bodies, double size) {
@@ -95,6 +103,71 @@ TEST_CASE("rotated, translated and united solids agree with membership") {
         Vec3 centroid;
         for (const int node : mesh.tet(t)) centroid += 0.25 * mesh.points[node];
         CHECK(contains(cross, centroid));
+    }
+}
+
+TEST_CASE("round shapes that Open CASCADE gets wrong at first have the volume of their drawing") {
+    using Operation = CombinedSolid::Operation;
+    const Solid disc = solid(CylinderSolid{{0, 0, 0}, {0, 0, 4}, 10});
+    const Solid rod = solid(CylinderSolid{{2, -1, -3}, {2, -1, 1}, 3});
+    const Solid ball = solid(SphereSolid{{4, -2, -3}, 2});
+    const Solid wide = solid(CylinderSolid{{0, 0, 0}, {0, 0, 2}, 4});
+    const Solid beside = solid(SphereSolid{{-5, 1, 2}, 4});
+    struct Case {
+        const char* name;
+        Solid solid;
+        double volume;
+    };
+    // Volumes by integration in the plane.
+    for (const Case& one :
+         {Case{"a seam in the rim", without(disc, solid(SphereSolid{{0, 10, 2}, 2})), 1240.51},
+          Case{"a ball opposite, which crashed", without(disc, solid(SphereSolid{{0, -10, 2}, 2})), 1240.51},
+          Case{"a bite out of a rod", without(rod, ball), 101.11},
+          Case{"the bite itself", solid(CombinedSolid{Operation::intersect, {rod, ball}}), 11.98},
+          Case{"a rod with a ball", solid(CombinedSolid{Operation::unite, {rod, ball}}), 134.62},
+          Case{"a crash", without(wide, beside), 78.03},
+          Case{"another crash", solid(CombinedSolid{Operation::unite, {wide, beside}}), 346.11}}) {
+        CAPTURE(one.name);
+        const Result<double> exact = solid_volume(one.solid);
+        REQUIRE_MESSAGE(exact, (exact ? "" : exact.error().message));
+        CHECK(*exact == near(one.volume, {.relative = 1e-3}));
+        const Result<TriMesh> surface = tessellate(one.solid, 0.01);
+        REQUIRE_MESSAGE(surface, (surface ? "" : surface.error().message));
+        CHECK(signed_volume(*surface) == near(one.volume, {.relative = 6e-3}));
+        CHECK(round_volume(mesh_of({{"b", one.solid}}, 3, 2)) == near(one.volume, {.relative = 0.05}));
+    }
+}
+
+TEST_CASE("round bodies of which Open CASCADE overlooks the overlap share it all the same") {
+    const TetMesh mesh = mesh_of(
+        {{"rod", solid(CylinderSolid{{2, -1, -3}, {2, -1, 1}, 3})}, {"ball", solid(SphereSolid{{4, -2, -3}, 2})}}, 1.5,
+        2);
+    CHECK(round_volume(mesh, 0) == near(101.11, {.relative = 0.02}));
+    CHECK(round_volume(mesh, 1) == near(4.0 / 3 * std::numbers::pi * 8, {.relative = 0.01}));
+    REQUIRE(mesh.notes.size() == 1);
+    CHECK(mesh.notes.front().find("overlap in a volume of 11.98") != std::string::npos);
+}
+
+TEST_CASE("shapes that touch in a point or along a line are one body with the sum of their volumes") {
+    using Operation = CombinedSolid::Operation;
+    const double ball = 4.0 / 3 * std::numbers::pi * 8;
+    const double rod = std::numbers::pi * 4 * 4;
+    const Solid sphere = solid(SphereSolid{{0, 0, 0}, 2});
+    struct Case {
+        Solid solid;
+        double volume;
+    };
+    for (const Case& one :
+         {Case{solid(CombinedSolid{Operation::unite, {sphere, box({2, -2, -2}, {4, 2, 2})}}), ball + 32},
+          Case{solid(RepeatedSolid{sphere, 3, {4, 0, 0}}), 3 * ball},
+          Case{solid(CombinedSolid{
+                   Operation::unite,
+                   {solid(CylinderSolid{{0, 0, 0}, {0, 0, 4}, 2}), solid(CylinderSolid{{4, 0, 0}, {4, 0, 4}, 2})}}),
+               2 * rod}}) {
+        const Result<double> exact = solid_volume(one.solid);
+        REQUIRE_MESSAGE(exact, (exact ? "" : exact.error().message));
+        CHECK(*exact == near(one.volume, {.relative = 1e-6}));
+        CHECK(round_volume(mesh_of({{"b", one.solid}}, 1.5, 2)) == near(one.volume, {.relative = 0.02}));
     }
 }
 

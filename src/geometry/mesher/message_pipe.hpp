@@ -12,13 +12,16 @@
 namespace pliant::mesh {
 
 /// Sent by both ends; a different version is refused. Must change with every format change in packing.hpp.
-inline constexpr std::string_view mesher_greeting = "pliant-mesh 1";
+inline constexpr std::string_view mesher_greeting = "pliant-mesh 2";
+
+/// A request can ask for so many ways to place the seams of round shapes, 0 to 3; the usual one is 0.
+inline constexpr std::uint8_t seam_ways = 4;
 
 enum class MessageKind : std::uint8_t {
     greeting,     ///< first message of the mesher: mesher_greeting
-    mesh_bodies,  ///< bodies, settings; answered by a TetMesh
-    tessellate,   ///< solid, tolerance; by a TriMesh
-    volume,       ///< solid; by a number
+    mesh_bodies,  ///< bodies, settings; way of seams; answered by a TetMesh
+    tessellate,   ///< solid, tolerance, way of seams; by a TriMesh
+    volume,       ///< solid, way of seams; by a number
     read_step,    ///< file, scale; by a StepContent
     notches,      ///< surface, path; by a list of notches
     progress,     ///< from the mesher, at any time: stage, fraction

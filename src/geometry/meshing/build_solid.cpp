@@ -1,13 +1,21 @@
 #include "geometry/meshing/build_solid.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
 #include <map>
+#include <new>
+#include <span>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "base/core/boxes.hpp"
+#include "geometry/meshing/sampled_volume.hpp"
 #include "geometry/shapes/flat_faces.hpp"
+#include "geometry/shapes/shape_names.hpp"
 
 namespace pliant::mesh::kernel {
 namespace {
@@ -15,18 +23,64 @@ namespace {
 namespace occ = gmsh::model::occ;
 using gmsh::Entities;
 
+/// Where round shapes have their seams, and how Boolean operations are done.
+struct Way {
+    double ball_about_z, ball_about_x, cylinder;  ///< radians, odd ones: no drawing has them
+    double tolerance = 0;     ///< how far apart faces may be that are taken for one, as a share of the solid's size
+    bool one_by_one = false;  ///< many shapes are united or subtracted one after the other
+    [[nodiscard]] bool is_turned() const { return cylinder != 0; }
+};
+constexpr std::array<Way, all_ways> ways = {{{0, 0, 0},
+                                             {0.3, 1, 0.7},
+                                             {2.1, 2.3, 0.4},
+                                             {4.3, 0.55, 1.9},
+                                             {0, 0, 0, 0, true},
+                                             {0.3, 1, 0.7, 0, true},
+                                             {0, 0, 0, 1e-7},
+                                             {2.1, 2.3, 0.4, 1e-7, true}}};
+
+/// A Boolean operation gave what its expression is not, in one way.
+struct WrongVolume : std::exception {};
+/// ... in every way.
+struct CannotBuild : std::exception {
+    Error error;
+    explicit CannotBuild(Error why) : error(std::move(why)) {}
+};
+
+void set_tolerance(double tolerance) {
+    gmsh::option::set_number("Geometry.ToleranceBoolean", tolerance);
+}
+
 /// Converts an expression to Open CASCADE volumes.
 struct BuildSolid {
+    int way = 0;
+
     Entities operator()(const BoxSolid& s) const {
         const Vec3 d = s.high - s.low;
         return {{3, occ::add_box(s.low.x, s.low.y, s.low.z, d.x, d.y, d.z)}};
     }
     Entities operator()(const SphereSolid& s) const {
-        return {{3, occ::add_sphere(s.center.x, s.center.y, s.center.z, s.radius)}};
+        const Vec3& c = s.center;
+        const Entities ball = {{3, occ::add_sphere(c.x, c.y, c.z, s.radius)}};
+        if (turns().is_turned()) {
+            const double own = own_turn(c, s.radius);
+            occ::rotate(ball, c.x, c.y, c.z, 0, 0, 1, turns().ball_about_z + own);
+            occ::rotate(ball, c.x, c.y, c.z, 1, 0, 0, turns().ball_about_x + own);
+        }
+        return ball;
     }
     Entities operator()(const CylinderSolid& s) const {
         const Vec3 d = s.to - s.from;
-        return {{3, occ::add_cylinder(s.from.x, s.from.y, s.from.z, d.x, d.y, d.z, s.radius)}};
+        const Entities rod = {{3, occ::add_cylinder(s.from.x, s.from.y, s.from.z, d.x, d.y, d.z, s.radius)}};
+        if (turns().is_turned())
+            occ::rotate(rod, s.from.x, s.from.y, s.from.z, d.x, d.y, d.z,
+                        turns().cylinder + own_turn(s.from, s.radius));
+        return rod;
+    }
+    /// Shapes in a row get different turns, or their seams would lie alike again.
+    static double own_turn(const Vec3& at, double radius) {
+        constexpr double share = 0.05;
+        return std::sin(share * (at.x + 2 * at.y + 3 * at.z) / radius);
     }
     Entities operator()(const PrismSolid& s) const {
         const auto axis = [&](std::size_t k) { return static_cast<std::size_t>(s.axes[k]); };
@@ -49,19 +103,14 @@ struct BuildSolid {
         return out;
     }
     Entities operator()(const CombinedSolid& s) const {
-        Entities first = build(s.parts.front());
-        Entities others;
-        for (std::size_t i = 1; i < s.parts.size(); ++i) {
-            Entities part = build(s.parts[i]);
-            if (s.operation == CombinedSolid::Operation::intersect)
-                first = intersect(first, part);
-            else
-                others.insert(others.end(), part.begin(), part.end());
+        switch (s.operation) {
+            case CombinedSolid::Operation::unite:
+                return united_or_beside(s.parts, "union", [&](const BuildSolid& in) { return in.unite(s.parts); });
+            case CombinedSolid::Operation::intersect:
+                return in_any_way(s.parts, "intersection", [&](const BuildSolid& in) { return in.intersect(s.parts); });
+            default:
+                return in_any_way(s.parts, "difference", [&](const BuildSolid& in) { return in.subtract(s.parts); });
         }
-        if (first.empty() || others.empty())
-            return first.empty() && s.operation == CombinedSolid::Operation::unite ? others : first;
-        return (s.operation == CombinedSolid::Operation::unite ? occ::fuse(first, others) : occ::cut(first, others))
-            .entities;
     }
     Entities operator()(const TranslatedSolid& s) const {
         Entities part = build(s.of);
@@ -75,6 +124,13 @@ struct BuildSolid {
         return part;
     }
     Entities operator()(const RepeatedSolid& s) const {
+        std::vector<Solid> copies;
+        for (int k = 0; k < s.count; ++k)
+            copies.push_back(std::make_shared<const SolidNode>(SolidNode{TranslatedSolid{s.of, k * s.step}}));
+        return united_or_beside(copies, "union of copies", [&](const BuildSolid& in) { return in.repeat(s, copies); });
+    }
+
+    Entities repeat(const RepeatedSolid& s, const std::vector<Solid>& solids) const {
         const Entities first = build(s.of);
         Entities copies;
         for (int k = 1; k < s.count && !first.empty(); ++k) {
@@ -86,7 +142,7 @@ struct BuildSolid {
             copies.insert(copies.begin(), first.begin(), first.end());
             return copies;
         }
-        return occ::fuse(first, copies).entities;
+        return united(first, copies, solids);
     }
 
     /// True if the copies certainly do not touch: uniting many takes minutes for 1000.
@@ -96,9 +152,16 @@ struct BuildSolid {
         return !boxes_meet(box, {box.low + s.step, box.high + s.step}, gap);
     }
 
+    Entities operator()(const EnclosedSolid& s) const {
+        return in_any_way(s.walls, "space between walls", [&](const BuildSolid& in) { return in.enclose(s); });
+    }
+    Entities operator()(const NotchesSolid& s) const {
+        return in_any_way(s.walls, "space between walls", [&](const BuildSolid& in) { return in.notch(s); });
+    }
+
     /// The empty space between the walls consists of pieces; takes the one that contains the point, unless it is the
     /// outermost.
-    Entities operator()(const EnclosedSolid& s) const {
+    Entities enclose(const EnclosedSolid& s) const {
         const Entities walls = build_all(s.walls);
         Box3 box;
         for (const Solid& wall : s.walls) {
@@ -109,8 +172,9 @@ struct BuildSolid {
         const double margin = 0.1 * box.diagonal();
         const Vec3 low = box.low - Vec3{margin, margin, margin};
         const Vec3 size = box.size() + 2 * Vec3{margin, margin, margin};
+        const Solid around = std::make_shared<const SolidNode>(SolidNode{BoxSolid{low, low + size}});
         const Entities pieces =
-            occ::cut({{3, occ::add_box(low.x, low.y, low.z, size.x, size.y, size.z)}}, walls).entities;
+            cut({{3, occ::add_box(low.x, low.y, low.z, size.x, size.y, size.z)}}, walls, {around}, s.walls);
         Entities kept;
         for (const auto& piece : pieces) {
             if (kept.empty() && !reaches(piece, low) && holds(piece, s.point, 1e-6 * margin))
@@ -121,12 +185,12 @@ struct BuildSolid {
         return kept;
     }
 
-    Entities operator()(const NotchesSolid& s) const {
+    Entities notch(const NotchesSolid& s) const {
         const Entities hulls = build_all(s.hulls);
         const Entities walls = build_all(s.walls);
         Entities kept;
         const double radius = 1e-7 * bounds(s.hulls.front()).diagonal();
-        for (const auto& piece : occ::cut(hulls, walls).entities) {
+        for (const auto& piece : cut(hulls, walls, s.hulls, s.walls)) {
             const auto inside = [&](const Vec3& point) { return holds(piece, point, radius); };
             if (std::any_of(s.points.begin(), s.points.end(), inside))
                 kept.push_back(piece);
@@ -194,12 +258,16 @@ struct BuildSolid {
         }
         const int probe =
             occ::add_box(point.x - radius, point.y - radius, point.z - radius, 2 * radius, 2 * radius, 2 * radius);
-        const Entities common = intersect(occ::copy({piece}), {{3, probe}});
+        const Entities common = common_part(occ::copy({piece}), {{3, probe}});
         if (!common.empty()) occ::remove(common, true);
         return !common.empty();
     }
 
-    static Entities build_all(const std::vector<Solid>& solids) {
+    [[nodiscard]] const Way& turns() const { return ways[static_cast<std::size_t>(way)]; }
+
+    [[nodiscard]] Entities build(const Solid& solid) const { return std::visit(*this, solid->shape); }
+
+    [[nodiscard]] Entities build_all(const std::vector<Solid>& solids) const {
         Entities all;
         for (const Solid& solid : solids) {
             const Entities one = build(solid);
@@ -208,15 +276,132 @@ struct BuildSolid {
         return all;
     }
 
-    static Entities intersect(const Entities& a, const Entities& b) {
+    /// What `work` makes in this way or, where that fails, in another one. What a failed attempt leaves is removed.
+    template <class Work>
+    Entities in_any_way(const std::vector<Solid>& parts, const char* what, const Work& work) const {
+        const Entities before = occ::get_entities(3);
+        for (int k = 0; k < all_ways; ++k) {
+            try {
+                return work(BuildSolid{(way + k) % all_ways});
+            } catch (const std::bad_alloc&) {
+                throw;
+            } catch (const CannotBuild&) {  // of a part
+                throw;
+            } catch (...) {  // Open CASCADE throws what is no std::exception
+                Entities left = occ::get_entities(3);
+                std::erase_if(left,
+                              [&](const auto& entity) { return std::ranges::find(before, entity) != before.end(); });
+                if (!left.empty()) occ::remove(left, true);
+            }
+        }
+        throw CannotBuild({Cause::input, fmt::format("Open CASCADE gets the {} of {} wrong; {}", what, shapes_of(parts),
+                                                     advice_on_contact)});
+    }
+
+    /// As in_any_way(), for unions: parts that only touch, which Open CASCADE counts twice or turns inside out at
+    /// times, may also stay beside each other.
+    template <class Work>
+    Entities united_or_beside(const std::vector<Solid>& parts, const char* what, const Work& work) const {
+        constexpr int points = 40000;
+        try {
+            return in_any_way(parts, what, work);
+        } catch (const CannotBuild&) {
+            if (!can_be_sampled(parts) || repeated_volume(parts, points).volume > 0) throw;
+            return build_all(parts);
+        }
+    }
+
+    /// As in_any_way() wants it: throws if the volume does not fit.
+    static void check(double volume, double of, const std::function<SampledVolume(int)>& sampled) {
+        if (!fits(volume, volume_slack(of), sampled)) throw WrongVolume();
+    }
+
+    /// A Boolean operation with all tools at once, or with one after the other.
+    [[nodiscard]] Entities in_steps(Entities objects, const Entities& tools,
+                                    gmsh::model::occ::Outcome (*operation)(const Entities&, const Entities&)) const {
+        if (!turns().one_by_one) return operation(objects, tools).entities;
+        for (const auto& tool : tools) {
+            if (objects.empty())
+                occ::remove({tool}, true);
+            else
+                objects = operation(objects, {tool}).entities;
+        }
+        return objects;
+    }
+
+    void use_tolerance(const Solid& solid) const { set_tolerance(turns().tolerance * bounds(solid).diagonal()); }
+
+    [[nodiscard]] Entities unite(const std::vector<Solid>& parts) const {
+        Entities first = build(parts.front());
+        const Entities others = build_all({parts.begin() + 1, parts.end()});
+        if (first.empty()) return others;
+        return others.empty() ? first : united(first, others, parts);
+    }
+
+    [[nodiscard]] Entities united(const Entities& first, const Entities& others,
+                                  const std::vector<Solid>& parts) const {
+        const double sum = volume_of(first) + volume_of(others);
+        use_tolerance(parts.front());
+        Entities whole = in_steps(first, others, occ::fuse);
+        if (can_be_sampled(parts))
+            check(sum - volume_of(whole), sum, [&](int points) { return repeated_volume(parts, points); });
+        return whole;
+    }
+
+    [[nodiscard]] Entities subtract(const std::vector<Solid>& parts) const {
+        Entities first = build(parts.front());
+        const std::vector<Solid> others(parts.begin() + 1, parts.end());
+        const Entities tools = build_all(others);
+        return first.empty() || tools.empty() ? first : cut(first, tools, {parts.front()}, others);
+    }
+
+    [[nodiscard]] Entities cut(const Entities& objects, const Entities& tools, const std::vector<Solid>& solids,
+                               const std::vector<Solid>& others) const {
+        const double whole = volume_of(objects);
+        use_tolerance(solids.front());
+        Entities rest = in_steps(objects, tools, occ::cut);
+        // Of several objects that overlap, what is cut off counts once or more often.
+        if (solids.size() > 1 || !can_be_sampled(solids.front()) || !can_be_sampled(others)) return rest;
+        check(whole - volume_of(rest), whole,
+              [&](int points) { return covered_volume(solids.front(), others, points); });
+        return rest;
+    }
+
+    [[nodiscard]] Entities intersect(const std::vector<Solid>& parts) const {
+        Entities common = build(parts.front());
+        std::vector<Solid> before = {parts.front()};
+        for (std::size_t i = 1; i < parts.size(); ++i) {
+            const Entities part = build(parts[i]);
+            const double whole = volume_of(common);
+            use_tolerance(parts.front());
+            common = common_part(common, part);
+            const Solid others = std::make_shared<const SolidNode>(
+                SolidNode{CombinedSolid{CombinedSolid::Operation::intersect, before}});
+            if (can_be_sampled(others) && can_be_sampled(parts[i]))
+                check(volume_of(common), whole,
+                      [&](int points) { return covered_volume(others, std::span(&parts[i], 1), points); });
+            before.push_back(parts[i]);
+        }
+        return common;
+    }
+
+    static Entities common_part(const Entities& a, const Entities& b) {
         return a.empty() || b.empty() ? Entities{} : occ::intersect(a, b).entities;
     }
 };
 
 }  // namespace
 
-Entities build(const Solid& solid) {
-    return std::visit(BuildSolid{}, solid->shape);
+Result<Entities> build(const Solid& solid, int way) {
+    try {
+        return BuildSolid{way % all_ways}.build(solid);
+    } catch (const CannotBuild& wrong) {
+        return tl::unexpected(wrong.error);
+    }
+}
+
+double volume_slack(double volume) {
+    return 2e-4 * volume;
 }
 
 Entities import_solids(const std::string& file, double scale) {
@@ -235,7 +420,8 @@ double volume_of(const Entities& volumes) {
 }
 
 double common_volume(const Entities& one, const Entities& other) {
-    const Entities common = BuildSolid::intersect(occ::copy(one), occ::copy(other));
+    set_tolerance(0);
+    const Entities common = BuildSolid::common_part(occ::copy(one), occ::copy(other));
     const double volume = volume_of(common);
     if (!common.empty()) occ::remove(common, true);
     return volume;

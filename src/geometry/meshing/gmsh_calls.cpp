@@ -235,6 +235,12 @@ void remove(const Entities& what, bool recursive) {
     api::occ::remove(what, recursive);
 }
 
+Entities get_entities(int dimension) {
+    Entities found;
+    api::occ::getEntities(found, dimension);
+    return found;
+}
+
 Entities import_shapes(const std::string& file) {
     Entities out;
     api::occ::importShapes(file, out, true, "step");

@@ -99,6 +99,8 @@ void rotate(const Entities& what, double x, double y, double z, double ax, doubl
 /// Uniform scaling about the origin.
 void dilate(const Entities& what, double factor);
 void remove(const Entities& what, bool recursive);
+/// What Open CASCADE has of a dimension, also before synchronize().
+Entities get_entities(int dimension);
 /// Solids of a STEP file or, if it has none, its shapes of highest dimension.
 Entities import_shapes(const std::string& file);
 /// Minimum and maximum corner.

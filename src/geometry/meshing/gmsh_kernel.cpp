@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -10,13 +11,16 @@
 #include "base/core/boxes.hpp"
 #include "geometry/mesh/curved_tets.hpp"
 #include "geometry/mesh/mesh_report.hpp"
+#include "geometry/mesher/message_pipe.hpp"
 #include "geometry/meshing/build_solid.hpp"
 #include "geometry/meshing/drawn_improver.hpp"
 #include "geometry/meshing/gmsh_session.hpp"
+#include "geometry/meshing/sampled_volume.hpp"
 #include "geometry/meshing/tet_improver.hpp"
 #include "geometry/repair/surface_shells.hpp"
 #include "geometry/repair/surface_slivers.hpp"
 #include "geometry/shapes/overlap_note.hpp"
+#include "geometry/shapes/shape_names.hpp"
 
 namespace pliant::mesh::kernel {
 namespace {
@@ -24,18 +28,47 @@ namespace {
 namespace occ = gmsh::model::occ;
 using gmsh::Entities;
 
-/// A note for every two solids that overlap; join_volumes() gives the overlap to the later one.
+/// Open CASCADE joined solids wrongly.
+struct WrongJoint : std::exception {
+    [[nodiscard]] const char* what() const noexcept override { return "the volumes are wrong"; }
+};
+
+/// A note for every two solids that overlap; join_volumes() gives the overlap to the later one. Throws if the points in
+/// them tell another overlap.
 std::vector<std::string> overlaps(std::span<const NamedSolid> solids, const std::vector<Entities>& volumes) {
     std::vector<std::string> notes;
     for (std::size_t i = 0; i < solids.size(); ++i) {
         for (std::size_t j = i + 1; j < solids.size(); ++j) {
-            if (!boxes_meet(bounds(solids[i].solid), bounds(solids[j].solid))) continue;
+            const Solid &one = solids[i].solid, &other = solids[j].solid;
+            if (!boxes_meet(bounds(one), bounds(other))) continue;
             const double overlap = common_volume(volumes[i], volumes[j]);
-            if (overlap <= 1e-9 * std::min(volume_of(volumes[i]), volume_of(volumes[j]))) continue;
+            const double smaller = std::min(volume_of(volumes[i]), volume_of(volumes[j]));
+            const auto sampled = [&](int points) { return covered_volume(one, {&other, 1}, points); };
+            if (can_be_sampled(one) && can_be_sampled(other) && !fits(overlap, volume_slack(smaller), sampled))
+                throw WrongJoint();
+            if (overlap <= 1e-9 * smaller) continue;
             notes.push_back(overlap_note(solids[i].name, solids[j].name, overlap));
         }
     }
     return notes;
+}
+
+/// Throws if joining left a solid with another volume than what later ones do not cover of it.
+void check_joint(std::span<const NamedSolid> solids, const std::vector<double>& before,
+                 const std::vector<double>& after, double within) {
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+        const Solid& solid = solids[i].solid;
+        const Box3 box = bounds(solid);
+        std::vector<Solid> later;
+        for (std::size_t j = i + 1; j < solids.size(); ++j) {
+            if (boxes_meet(box, bounds(solids[j].solid), within)) later.push_back(solids[j].solid);
+        }
+        if (!can_be_sampled(solid) || !can_be_sampled(later)) continue;
+        const Vec3 d = box.size();
+        const double moved = within * 2 * (d.x * d.y + d.y * d.z + d.z * d.x);  // faces may move by this to close gaps
+        const auto sampled = [&](int points) { return covered_volume(solid, later, points); };
+        if (!fits(before[i] - after[i], volume_slack(before[i]) + moved, sampled)) throw WrongJoint();
+    }
 }
 
 /// Maps Gmsh's 10-node tet to ours: its last two mid-edge nodes are swapped.
@@ -231,6 +264,19 @@ tl::unexpected<Error> nothing_left(const NamedSolid& named) {
     return about(named.name, {Cause::input, fmt::format("body \"{}\" is empty: nothing is left of it", named.name)});
 }
 
+/// The error where joining fails in every way, at last for this reason.
+tl::unexpected<Error> cannot_join(std::span<const NamedSolid> solids, const std::string& reason) {
+    std::vector<Solid> shapes;
+    std::string names;
+    for (const NamedSolid& named : solids) {
+        shapes.push_back(named.solid);
+        names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", named.name);
+    }
+    return about(solids.back().name,
+                 {Cause::input, fmt::format("Open CASCADE joins the bodies {} wrongly, which consist of {}; {} ({})",
+                                            names, shapes_of(shapes), advice_on_contact, reason)});
+}
+
 /// Where the volume of a mesh differs most from that of the solid, as a share of it.
 struct VolumeError {
     double share = 0;
@@ -249,20 +295,45 @@ VolumeError volume_error(const TetMesh& mesh, const std::vector<double>& exact) 
     return worst;
 }
 
-/// `exact` receives the volume of each solid.
-Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
-                                double join_within, int refinement, std::vector<double>& exact) {
+/// How solids are meshed.
+struct Attempt {
+    double size = 0;
+    int order = 2;
+    SizeAt size_at;
+    double join_within = 0;
+    int refinement = 1;  ///< how much more closely curves are followed
+    int way = 0;         ///< of build()
+};
+
+/// What an attempt finds out besides its mesh.
+struct Findings {
+    std::vector<double> exact;  ///< the volume of each solid
+    bool misjoined = false;     ///< Open CASCADE joined the solids wrongly; built in another way they may fit
+};
+
+Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, const Attempt& how, Findings& findings) {
+    const double size = how.size;
+    std::vector<double>& exact = findings.exact;
     return in_session("meshing", [&]() -> Result<TetMesh> {
         std::vector<Entities> volumes;
-        double volume = 0;
+        std::vector<double> drawn;
         for (const NamedSolid& named : solids) {
-            volumes.push_back(build(named.solid));
-            const double one = volume_of(volumes.back());
-            if (!(one > 0)) return nothing_left(named);
-            volume += one;
+            const Result<Entities> built = build(named.solid, how.way);
+            if (!built)
+                return about(named.name,
+                             {built.error().cause, fmt::format("body \"{}\": {}", named.name, built.error().message)});
+            volumes.push_back(*built);
+            drawn.push_back(volume_of(volumes.back()));
+            if (!(drawn.back() > 0)) return nothing_left(named);
         }
+        findings.misjoined = true;  // unless it gets beyond the checks
         std::vector<std::string> notes = overlaps(solids, volumes);
-        const std::map<int, int> solid_of_volume = join_volumes(volumes, join_within);
+        const std::map<int, int> solid_of_volume = join_volumes(volumes, how.join_within);
+        exact.assign(solids.size(), 0);
+        for (const auto& [tag, solid] : solid_of_volume)
+            exact[static_cast<std::size_t>(solid)] += occ::get_mass(3, tag);
+        check_joint(solids, drawn, exact, how.join_within);
+        findings.misjoined = false;
         for (std::size_t i = 0; i < solids.size(); ++i) {
             const auto is_left = [&](const auto& entry) { return entry.second == static_cast<int>(i); };
             if (std::none_of(solid_of_volume.begin(), solid_of_volume.end(), is_left))
@@ -272,23 +343,20 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
         }
         occ::synchronize();
         Entities joined;
-        exact.assign(solids.size(), 0);
-        for (const auto& [tag, solid] : solid_of_volume) {
-            joined.emplace_back(3, tag);
-            exact[static_cast<std::size_t>(solid)] += occ::get_mass(3, tag);
-        }
+        for (const auto& [tag, solid] : solid_of_volume) joined.emplace_back(3, tag);
+        const double volume = std::accumulate(drawn.begin(), drawn.end(), 0.0);
         if (Status status = check_tet_count(volume, boundary_area(joined), size); !status)
             return tl::unexpected(status.error());
         set_size(size);
-        gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 8 * refinement);
-        gmsh::option::set_number("Mesh.MeshSizeMin", 0.2 * size / refinement);
-        if (size_at) {
-            gmsh::option::set_number("Mesh.MeshSizeMin", 0.05 * size / refinement);
-            follow_size(size_at, solids_of_entities(solid_of_volume), size);
+        gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 8 * how.refinement);
+        gmsh::option::set_number("Mesh.MeshSizeMin", 0.2 * size / how.refinement);
+        if (how.size_at) {
+            gmsh::option::set_number("Mesh.MeshSizeMin", 0.05 * size / how.refinement);
+            follow_size(how.size_at, solids_of_entities(solid_of_volume), size);
         }
-        Result<TetMesh> mesh = generate(solid_of_volume, order);
+        Result<TetMesh> mesh = generate(solid_of_volume, how.order);
         if (mesh) improve_drawn_tets(*mesh, improved_below_deg);
-        if (mesh && order == 2) straighten_folded_tets(*mesh, least_jacobian);
+        if (mesh && how.order == 2) straighten_folded_tets(*mesh, least_jacobian);
         if (mesh) mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
         return mesh;
     });
@@ -313,12 +381,20 @@ Status check_tet_count(double volume, double area, double size) {
 }
 
 Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
-                            double join_within) {
+                            double join_within, int way) {
     constexpr double most_off = 0.03;
     constexpr int finest = 8;
-    std::vector<double> exact;
-    const auto attempt = [&](double factor, int refinement) {
-        return try_mesh_solids(solids, factor * size, order, times(size_at, factor), join_within, refinement, exact);
+    Findings findings;
+    const std::vector<double>& exact = findings.exact;
+    const int last_way = way + all_ways - 1;
+    const auto attempt = [&](double factor, int refinement) -> Result<TetMesh> {
+        for (;; ++way) {
+            findings.misjoined = false;
+            Result<TetMesh> mesh = try_mesh_solids(
+                solids, {factor * size, order, times(size_at, factor), join_within, refinement, way}, findings);
+            if (!findings.misjoined) return mesh;
+            if (way == last_way) return cannot_join(solids, mesh.error().message);
+        }
     };
     // On a thin round wall the chords of one side may cut through the other, or quadratic tets may have to be straight
     // on one side and not on the other, which makes it thick: follow the curves more closely.
@@ -333,6 +409,12 @@ Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int
         if (mesh && !finer) break;
         refinement *= 2;
         mesh = std::move(finer);
+    }
+    // Gmsh may fail on the seam of a round face.
+    while (!mesh && mesh.error().cause == Cause::failed && way + 1 < seam_ways) {
+        ++way;
+        refinement = 1;
+        mesh = attempt(1, refinement);
     }
     if (!mesh) return mesh;
     mesh = without_slivers(std::move(mesh), [&](double factor) { return attempt(factor, refinement); });

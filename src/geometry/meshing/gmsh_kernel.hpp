@@ -33,10 +33,10 @@ inline constexpr double sliver_deg = 5;
 using SizeAt = std::function<double(std::size_t, const Vec3&)>;
 
 /// One conforming mesh; region i is solid i, without region names. Where solids overlap, the later one gets the shared
-/// volume, which a note states; solids at most `join_within` apart are joined. Errors: an empty solid; a size that
-/// gives too many tets.
+/// volume, which a note states; solids at most `join_within` apart are joined. `way`: as build_solid.hpp says. Errors:
+/// an empty solid; one that Open CASCADE gets wrong; a size that gives too many tets.
 [[nodiscard]] Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order,
-                                          const SizeAt& size_at = {}, double join_within = 0);
+                                          const SizeAt& size_at = {}, double join_within = 0, int way = 0);
 
 /// Remeshes the inside of a closed surface (one outer shell and its cavities), linear, in one region. Edges sharper
 /// than `angle_deg` are preserved. If a dihedral angle is under 5 degrees, edges get up to a fifth shorter. A surface
@@ -45,8 +45,8 @@ using SizeAt = std::function<double(std::size_t, const Vec3&)>;
                                            const SizeAt& size_at = {});
 
 /// See mesher.hpp; the tolerance is above zero.
-[[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);
-[[nodiscard]] Result<double> solid_volume(const Solid& solid);
+[[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance, int way = 0);
+[[nodiscard]] Result<double> solid_volume(const Solid& solid, int way = 0);
 
 /// All solids of a STEP file, millimetres times `scale`. Errors do not name the file.
 [[nodiscard]] Result<StepContent> read_step(const std::string& file, double scale);

@@ -89,7 +89,7 @@ double rounding(std::span<const BodyGeometry> bodies) {
 }
 
 Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
-                               const SizeField& field, double join_within, const std::vector<bool>& left_out) {
+                               const SizeField& field, double join_within, const std::vector<bool>& left_out, int way) {
     std::vector<NamedSolid> solids;
     std::vector<int> body_of_solid;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -101,7 +101,7 @@ Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshS
     if (solids.empty()) return Part{};
     const SizeAt size_at = sizes_of(field, {body_of_solid.begin(), body_of_solid.end()});
     Result<TetMesh> mesh =
-        mesh_solids(solids, settings.size, settings.order, size_at, std::max(join_within, rounding(bodies)));
+        mesh_solids(solids, settings.size, settings.order, size_at, std::max(join_within, rounding(bodies)), way);
     if (!mesh) return tl::unexpected(mesh.error());
     for (int& region : mesh->region) region = body_of_solid[static_cast<std::size_t>(region)];
     return Part{std::move(*mesh)};
@@ -302,12 +302,13 @@ struct Drawing {
     std::span<const BodyGeometry> bodies;
     std::vector<TouchingGroup> groups;
     std::vector<bool> grouped;  ///< (bodies)
+    int way = 0;                ///< of building solids
 };
 
-Result<Drawing> group_bodies(std::span<const BodyGeometry> bodies, double size) {
+Result<Drawing> group_bodies(std::span<const BodyGeometry> bodies, double size, int way) {
     Result<std::vector<TouchingGroup>> groups = touching_groups(bodies, size);
     if (!groups) return tl::unexpected(groups.error());
-    Drawing drawing{bodies, std::move(*groups), std::vector<bool>(bodies.size(), false)};
+    Drawing drawing{bodies, std::move(*groups), std::vector<bool>(bodies.size(), false), way};
     for (const TouchingGroup& group : drawing.groups) {
         for (const std::size_t b : group.bodies) drawing.grouped[b] = true;
     }
@@ -319,7 +320,7 @@ Result<TetMesh> mesh_once(const Drawing& drawing, const MeshSettings& settings, 
                           Progress& progress, double join_within = 0) {
     const std::span<const BodyGeometry> bodies = drawing.bodies;
     progress.advance("mesh", 0);
-    Result<Part> solids = mesh_drawn_solids(bodies, settings, field, join_within, drawing.grouped);
+    Result<Part> solids = mesh_drawn_solids(bodies, settings, field, join_within, drawing.grouped, drawing.way);
     if (!solids) return tl::unexpected(solids.error());
     std::vector<Part> parts;
     if (solids->mesh.tet_count() > 0) parts.push_back(std::move(*solids));
@@ -482,13 +483,14 @@ std::vector<BodyGeometry> without_seams(std::span<const BodyGeometry> bodies, st
 
 }  // namespace
 
-Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSettings& settings, Progress& progress) {
+Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSettings& settings, Progress& progress,
+                            int way) {
     if (Status status = check_settings(drawn, settings); !status) return tl::unexpected(status.error());
     std::vector<std::string> notes;
     const std::vector<BodyGeometry> bodies =
         with_solids(without_seams(drawn, notes), std::max(settings.close_gaps, 0.01 * settings.size));
     SizeField field(bodies, settings);
-    const Result<Drawing> drawing = group_bodies(bodies, settings.size);
+    const Result<Drawing> drawing = group_bodies(bodies, settings.size, way);
     if (!drawing) return tl::unexpected(drawing.error());
     if (Status status = follow_walls(*drawing, settings, field, progress); !status)
         return tl::unexpected(status.error());

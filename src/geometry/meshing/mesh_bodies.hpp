@@ -10,8 +10,8 @@
 
 namespace pliant::mesh::kernel {
 
-/// See mesher.hpp.
+/// See mesher.hpp; `way`: in which solids are built first (build_solid.hpp).
 [[nodiscard]] Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSettings& settings,
-                                          Progress& progress);
+                                          Progress& progress, int way = 0);
 
 }  // namespace pliant::mesh::kernel

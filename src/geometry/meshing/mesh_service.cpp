@@ -41,6 +41,13 @@ Result<std::string> packed(const Result<T>& value) {
     return out.take();
 }
 
+/// The first way to build solids (build_solid.hpp), as asked for.
+int first_way(Unpacker& in) {
+    const auto way = in.number<std::uint8_t>();
+    if (way >= seam_ways) in.fail();
+    return way;
+}
+
 tl::unexpected<Error> unreadable() {
     return failure("pliant-mesh cannot read what it was asked; it must be of the same version as the program");
 }
@@ -50,23 +57,26 @@ Result<std::string> mesh(Unpacker& in, Progress& progress) {
     MeshSettings settings;
     unpack(in, bodies);
     unpack(in, settings);
+    const int way = first_way(in);
     if (!in.finished()) return unreadable();
-    return packed(kernel::mesh_bodies(bodies, settings, progress));
+    return packed(kernel::mesh_bodies(bodies, settings, progress, way));
 }
 
 Result<std::string> tessellate_solid(Unpacker& in) {
     Solid solid;
     unpack(in, solid);
     const auto tolerance = in.number<double>();
+    const int way = first_way(in);
     if (!in.finished() || !(tolerance > 0)) return unreadable();
-    return packed(kernel::tessellate(solid, tolerance));
+    return packed(kernel::tessellate(solid, tolerance, way));
 }
 
 Result<std::string> measure(Unpacker& in) {
     Solid solid;
     unpack(in, solid);
+    const int way = first_way(in);
     if (!in.finished()) return unreadable();
-    return packed(kernel::solid_volume(solid));
+    return packed(kernel::solid_volume(solid, way));
 }
 
 Result<std::string> read_shapes(Unpacker& in) {

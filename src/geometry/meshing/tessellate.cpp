@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/mesher/message_pipe.hpp"
 #include "geometry/meshing/build_solid.hpp"
 #include "geometry/meshing/gmsh_kernel.hpp"
 #include "geometry/meshing/gmsh_session.hpp"
@@ -124,11 +125,11 @@ Chords chords_for(const Entities& volumes, double reach, double tolerance) {
     return {chords, std::max(tolerance, std::pow(std::numbers::pi / chords, 2) * radius)};
 }
 
-}  // namespace
-
-Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
+Result<TriMesh> try_tessellate(const Solid& solid, double tolerance, int way) {
     return in_session("tessellating", [&]() -> Result<TriMesh> {
-        const Entities volumes = build(solid);
+        const Result<Entities> built = build(solid, way);
+        if (!built) return tl::unexpected(built.error());
+        const Entities& volumes = *built;
         if (volumes.empty()) return input_error("is empty: nothing is left of it");
         occ::synchronize();
         const double reach = std::max(bounds(solid).diagonal() / 2, tolerance);
@@ -143,6 +144,16 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
             return failure("the surface encloses {:.6g} where the solid has {:.6g}", found, exact);
         return surface;
     });
+}
+
+}  // namespace
+
+Result<TriMesh> tessellate(const Solid& solid, double tolerance, int way) {
+    Result<TriMesh> surface = try_tessellate(solid, tolerance, way);
+    // Gmsh may fail on the seam of a round face.
+    while (!surface && surface.error().cause == Cause::failed && way + 1 < seam_ways)
+        surface = try_tessellate(solid, tolerance, ++way);
+    return surface;
 }
 
 namespace {
@@ -172,8 +183,12 @@ Result<StepContent> read_step(const std::string& file, double scale) {
     });
 }
 
-Result<double> solid_volume(const Solid& solid) {
-    return in_session("measuring", [&]() -> Result<double> { return volume_of(build(solid)); });
+Result<double> solid_volume(const Solid& solid, int way) {
+    return in_session("measuring", [&]() -> Result<double> {
+        const Result<Entities> built = build(solid, way);
+        if (!built) return tl::unexpected(built.error());
+        return volume_of(*built);
+    });
 }
 
 }  // namespace pliant::mesh::kernel
