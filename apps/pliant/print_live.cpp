@@ -316,9 +316,7 @@ host::LayerHook layer_hook(const LiveOptions& options) {
 }
 
 Result<int> print_live(const LiveOptions& options) {
-    // Slower, a print would take minutes to answer Ctrl-C: it looks up between waits of the machine's time.
-    if (!(options.speed >= 0.1 && options.speed <= 1e6))
-        return input_error("--speed {}: must be 0.1 to 1e6", options.speed);
+    if (Status status = host::check_speed(options.speed); !status) return tl::unexpected(status.error());
     Result<operate::ReadyJob> ready = operate::load_job(options.job);
     if (!ready) return tl::unexpected(ready.error());
     if (!options.journal.empty()) ready->job.journal = options.journal;

@@ -20,6 +20,7 @@
 #include "printing/operate/clock_file.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/twin/serve.hpp"
+#include "printing/wire/scaled_time.hpp"
 
 namespace pliant::app {
 namespace {
@@ -117,8 +118,7 @@ void print_end_json(twin::Twin& twin) {
 }
 
 Status run_twin(const TwinOptions& options) {
-    if (!(options.speed >= 0.1 && options.speed <= 1e6))
-        return input_error("--speed {}: must be 0.1 to 1e6", options.speed);
+    if (Status status = host::check_speed(options.speed); !status) return status;
     if (options.seconds && !(*options.seconds > 0))
         return input_error("--seconds {}: must be above 0; without it the twin runs until Ctrl-C", *options.seconds);
     const Result<machine::Printer> printer = read_printer(options.printer);

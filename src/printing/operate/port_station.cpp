@@ -47,8 +47,7 @@ host::Clock& PortStation::clock() {
 }
 
 Result<std::unique_ptr<PortStation>> PortStation::open(PortOptions options, ReadyJob& ready) {
-    if (!(options.speed >= 0.1 && options.speed <= 1e6))
-        return input_error("--speed {}: must be 0.1 to 1e6", options.speed);
+    if (Status status = host::check_speed(options.speed); !status) return tl::unexpected(status.error());
     std::optional<ClockFile> file;
     if (!options.clock_file.empty()) {
         auto opened = ClockFile::open(options.clock_file);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+
+#include "base/core/disjoint_sets.hpp"
 
 namespace pliant::slice {
 namespace {
@@ -67,27 +68,23 @@ bool touch_in_x(const Edge& a, const Edge& b) {
 
 /// Each edge's cluster, numbered from 0 by their first edges: edges whose boxes touch are of the same.
 std::vector<std::size_t> cluster_of(const std::vector<Edge>& edges) {
-    std::vector<std::size_t> parent(edges.size());
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto root = [&](std::size_t e) {
-        while (parent[e] != e) e = parent[e] = parent[parent[e]];
-        return e;
-    };
+    DisjointSets sets(edges.size());
     Columns columns(edges);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         columns.add(e, [&](std::size_t other) {
-            if (!touch_in_x(edges[e], edges[other])) return;
-            const std::size_t a = root(e), b = root(other);
-            parent[std::max(a, b)] = std::min(a, b);
+            if (touch_in_x(edges[e], edges[other])) sets.join(static_cast<int>(e), static_cast<int>(other));
         });
     }
     std::vector<std::size_t> number(edges.size());
     std::size_t count = 0;
-    for (std::size_t e = 0; e < edges.size(); ++e) number[e] = root(e) == e ? count++ : number[root(e)];
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto first = static_cast<std::size_t>(sets.find(static_cast<int>(e)));
+        number[e] = first == e ? count++ : number[first];
+    }
     return number;
 }
 
-/// A place on an edge of each cluster, by height.
+/// A place on an edge of each cluster that has any, by height.
 struct Probe {
     double x, y;
     std::size_t cluster;
@@ -96,6 +93,7 @@ struct Probe {
 std::vector<Probe> probes_of(const std::vector<Cluster>& clusters) {
     std::vector<Probe> probes;
     for (std::size_t i = 0; i < clusters.size(); ++i) {
+        if (clusters[i].edges.empty()) continue;
         const Edge& edge = clusters[i].edges[0];
         const double y = (edge.y0 + edge.y1) / 2;
         probes.push_back({edge.at(y), y, i});
@@ -104,21 +102,20 @@ std::vector<Probe> probes_of(const std::vector<Cluster>& clusters) {
     return probes;
 }
 
-/// The winding numbers around an cluster are those to the left of a place on it, due to the others.
-void look_around(std::vector<Cluster>& clusters) {
-    std::vector<std::pair<const Edge*, std::size_t>> edges, active;
-    for (std::size_t i = 0; i < clusters.size(); ++i) {
-        for (const Edge& e : clusters[i].edges) edges.emplace_back(&e, i);
-    }
-    std::sort(edges.begin(), edges.end(), [](const auto& l, const auto& r) { return l.first->y0 < r.first->y0; });
-    auto next = edges.begin();
+/// The winding numbers around a cluster are those to the left of a place on it, due to the others. `number`: of each
+/// edge's cluster.
+void look_around(const std::vector<Edge>& edges, const std::vector<std::size_t>& number,
+                 std::vector<Cluster>& clusters) {
+    std::vector<std::size_t> active;
+    std::size_t next = 0;
     for (const Probe& probe : probes_of(clusters)) {
-        std::erase_if(active, [&](const auto& e) { return e.first->y1 <= probe.y; });
-        for (; next != edges.end() && next->first->y0 <= probe.y; ++next) {
-            if (next->first->y1 > probe.y) active.push_back(*next);
+        std::erase_if(active, [&](std::size_t e) { return edges[e].y1 <= probe.y; });
+        for (; next < edges.size() && edges[next].y0 <= probe.y; ++next) {
+            if (edges[next].y1 > probe.y) active.push_back(next);
         }
-        for (const auto& [edge, cluster] : active) {
-            if (cluster != probe.cluster && edge->at(probe.y) < probe.x) pass(clusters[probe.cluster].around, *edge);
+        for (const std::size_t e : active) {
+            if (number[e] != probe.cluster && edges[e].at(probe.y) < probe.x)
+                pass(clusters[probe.cluster].around, edges[e]);
         }
     }
 }
@@ -142,8 +139,8 @@ std::vector<Cluster> clusters_of(std::span<const std::vector<Segment>> outlines)
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (edges[e].winding != 0) clusters[number[e]].edges.push_back(edges[e]);
     }
-    std::erase_if(clusters, [](const Cluster& i) { return i.edges.empty(); });  // level throughout: it encloses nothing
-    if (clusters.size() > 1) look_around(clusters);
+    if (clusters.size() > 1) look_around(edges, number, clusters);
+    std::erase_if(clusters, [](const Cluster& c) { return c.edges.empty(); });  // level throughout: it encloses nothing
     return clusters;
 }
 

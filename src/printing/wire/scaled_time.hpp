@@ -12,6 +12,12 @@
 
 namespace pliant::host {
 
+/// Slower than a tenth, a print would take minutes to answer Ctrl-C: it looks up between waits of the machine's time.
+[[nodiscard]] inline Status check_speed(double speed) {
+    if (speed >= 0.1 && speed <= 1e6) return {};
+    return input_error("--speed {}: must be 0.1 to 1e6", speed);
+}
+
 /// `clock` must outlive it; `speed` seconds pass here per second of `clock`.
 class ScaledClock final : public Clock {
 public:

@@ -92,10 +92,6 @@ Matrix9 second_change(const Weight& weight, const Sunk& sunk) {
     return weight.N_m3 * H;
 }
 
-}  // namespace
-
-namespace {
-
 /// Fans that close the holes of a skin: each from the lowest node of the hole's rim.
 std::vector<std::array<int, 3>> caps_of(const std::vector<std::array<int, 3>>& skin) {
     std::map<std::pair<int, int>, int> uses;  // of each edge, from its lower node: in that direction less the other
@@ -106,18 +102,13 @@ std::vector<std::array<int, 3>> caps_of(const std::vector<std::array<int, 3>>& s
         }
     }
     std::erase_if(uses, [](const auto& edge) { return edge.second == 0; });
-    std::map<int, int> number;  // of the nodes on rims, ascending
-    for (const auto& [edge, count] : uses) number[edge.first] = number[edge.second] = 0;
-    std::vector<int> node;
-    for (auto& [of, index] : number) {
-        index = static_cast<int>(node.size());
-        node.push_back(of);
-    }
-    DisjointSets rims(node.size());
-    for (const auto& [edge, count] : uses) rims.join(number[edge.first], number[edge.second]);
+    int last = -1;
+    for (const auto& [edge, count] : uses) last = std::max(last, edge.second);
+    DisjointSets rims(static_cast<std::size_t>(last + 1));
+    for (const auto& [edge, count] : uses) rims.join(edge.first, edge.second);
     std::vector<std::array<int, 3>> caps;
     for (const auto& [edge, count] : uses) {
-        const int tip = node[static_cast<std::size_t>(rims.find(number[edge.first]))];
+        const int tip = rims.find(edge.first);
         if (edge.first == tip || edge.second == tip) continue;
         for (int k = 0; k < std::abs(count); ++k)
             caps.push_back(count > 0 ? std::array{edge.second, edge.first, tip}
