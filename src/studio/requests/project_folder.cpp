@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 #include <system_error>
 
 #include "base/core/config.hpp"
@@ -67,38 +68,48 @@ const std::string* base_of(const config::Document& document) {
     return nullptr;
 }
 
-/// All texts of the document and of the file on which it is based, if that may be read. What a document changes of its
-/// base is read as if it stood there, so that a path in it is relative to the folder of the base.
-void visit_names(const config::Document& document, const fs::path& place, int deepest, const MayRead& may_read,
-                 const Visit& visit) {
-    const auto names_in = [&](const config::Value& value, const fs::path& folder, const fs::path& from) {
-        visit_texts(value, [&](const std::string& text) {
-            visit({text, from.empty() ? text : (from / text).generic_string(), folder / text});
-        });
-    };
-    const fs::path folder = document.file.parent_path();
-    const std::string* name = base_of(document);
-    if (name == nullptr) return names_in(document.root, folder, place);
-    const Named base{*name, place.empty() ? *name : (place / *name).generic_string(), folder / *name};
-    visit(base);
-    const fs::path of_base = place / fs::path(*name).parent_path();
-    for (const auto& [key, value] : std::get<config::Table>(document.root.data)) {
-        if (key == "robot") continue;
-        if (key != "set") {
-            names_in(value, base.path.parent_path(), of_base);
-            continue;
-        }
-        visit_texts(value, [&](const std::string& assignment) {
-            names_in(config::assigned_value(assignment), base.path.parent_path(), of_base);
-        });
+/// Where the texts of a robot file lead as paths.
+struct Folder {
+    fs::path path;
+    fs::path shown;  ///< as the document itself would name it
+
+    [[nodiscard]] Named named(const std::string& text) const {
+        return {text, shown.empty() ? text : (shown / text).generic_string(), path / text};
     }
-    std::error_code ignored;
-    if (deepest == 0 || !may_read(base) || !fs::is_regular_file(base.path, ignored)) return;
-    if (const Result<config::Document> below = config::load(base.path))
-        visit_names(*below, of_base, deepest - 1, may_read, visit);
+};
+
+/// All texts of a robot file; `folder` is that of the file in which all of them are read.
+void names_in(const config::Document& document, const Folder& folder, const Visit& visit) {
+    const bool is_based = base_of(document) != nullptr;
+    const auto visit_text = [&](const std::string& text) { visit(folder.named(text)); };
+    for (const auto& [key, value] : std::get<config::Table>(document.root.data)) {
+        if (!is_based || (key != "robot" && key != "set")) visit_texts(value, visit_text);
+        if (!is_based || key != "set") continue;
+        visit_texts(
+            value, [&](const std::string& assignment) { visit_texts(config::assigned_value(assignment), visit_text); });
+    }
 }
 
-constexpr int most_bases = 8;  // of files that are based on each other, one after the other
+/// All texts of the document and of the files on which it is based, one after the other, as far as they may be read.
+/// What a file changes of the one on which it is based is read as if it stood in the last of them, so that a path in it
+/// is relative to the folder of that one.
+void visit_names(const config::Document& document, const MayRead& may_read, const Visit& visit) {
+    std::vector<config::Document> files = {document};
+    Folder folder{document.file.parent_path(), {}};
+    std::error_code ignored;
+    std::set<fs::path> seen = {fs::weakly_canonical(document.file, ignored)};
+    while (const std::string* name = base_of(files.back())) {
+        const Named base = folder.named(*name);
+        visit(base);
+        folder = {base.path.parent_path(), folder.shown / fs::path(*name).parent_path()};
+        if (!may_read(base) || !fs::is_regular_file(base.path, ignored)) break;
+        if (!seen.insert(fs::weakly_canonical(base.path, ignored)).second) break;
+        Result<config::Document> below = config::load(base.path);
+        if (!below) break;
+        files.push_back(std::move(*below));
+    }
+    for (const config::Document& file : files) names_in(file, folder, visit);
+}
 
 }  // namespace
 
@@ -160,7 +171,7 @@ std::vector<std::string> ProjectFolder::texts_leading_outside(std::string_view t
     const Result<config::Document> document = config::parse(toml, file);
     if (!document) return outside;
     visit_names(
-        *document, {}, most_bases, [](const Named&) { return true; },
+        *document, [](const Named&) { return true; },
         [&](const Named& named) {
             if (leads_outside(named.text, named.path)) outside.push_back(named.shown);
         });
@@ -176,7 +187,7 @@ Status ProjectFolder::check_texts(std::string_view toml, const fs::path& file,
                !leads_outside(named.text, named.path);
     };
     std::string outside;
-    visit_names(*document, {}, most_bases, is_allowed, [&](const Named& named) {
+    visit_names(*document, is_allowed, [&](const Named& named) {
         if (outside.empty() && !is_allowed(named)) outside = named.shown;
     });
     if (outside.empty()) return {};
@@ -188,7 +199,7 @@ std::string ProjectFolder::stamps_of(std::string_view toml, const fs::path& file
     const Result<config::Document> document = config::parse(toml, file);
     if (!document) return stamps;
     visit_names(
-        *document, {}, most_bases, [](const Named&) { return true; },
+        *document, [](const Named&) { return true; },
         [&](const Named& named) {
             std::error_code error;
             if (named.text.empty() || named.text.size() > longest_path) return;

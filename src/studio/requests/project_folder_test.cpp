@@ -123,6 +123,16 @@ TEST_CASE("what a robot changes of the one that it is based on cannot lead outsi
     CHECK(why("robot = \"parts/base.toml\"\nprogram.file = \"../../own.stl\"\n") == "\"parts/../../own.stl\"");
     CHECK(why(based("../own.toml")) == "\"../own.toml\"");
     CHECK(why("robot = \"a.toml\"\n") == "");
+    // What stands on a file that stands on another one is relative to the folder of the last of them.
+    std::ofstream(place.project / "last.toml") << "[body]\ngeometry = \"b.stl\"\n";
+    std::ofstream(place.project / "parts" / "up.toml") << "robot = \"../last.toml\"\n";
+    CHECK(why(based("parts/up.toml", R"('body.geometry="b.stl"')")) == "");
+    CHECK(why(based("parts/up.toml", R"('body.geometry="../own.stl"')")) == "\"parts/../../own.stl\"");
+    std::ofstream(place.project / "0.toml") << "robot = \"parts/bad.toml\"\n";
+    for (int k = 1; k <= 30; ++k)
+        std::ofstream(place.project / (std::to_string(k) + ".toml"))
+            << "robot = \"" << std::to_string(k - 1) << ".toml\"\n";
+    CHECK(why(based("30.toml")) == "\"parts/../../project_secret/s.toml\"");
     // What the user's own file is based on is known, with the files that it names.
     const std::vector<std::string> own = folder->texts_leading_outside(based("../own.toml"), file);
     CHECK(own == std::vector<std::string>{"../own.toml", "../own.stl"});
