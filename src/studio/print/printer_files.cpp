@@ -21,9 +21,6 @@ using Json = nlohmann::json;
 
 constexpr std::uintmax_t largest_file = 4 << 20;
 
-/// Of two changes of a file at once the later one begins with what the former has written.
-std::mutex one_change_at_a_time;
-
 Json axes_json(const machine::Printer& p) {
     Json axes = Json::array();
     for (const machine::Axis axis : machine::all_axes) {
@@ -106,7 +103,7 @@ Result<prepare::PrinterFile> read_printer(const ProjectFolder& folder, const std
 }
 
 Status new_printer(const ProjectFolder& folder, const std::string& from, const std::string& name) {
-    const std::lock_guard lock(one_change_at_a_time);
+    const std::lock_guard lock(folder.one_change_at_a_time());
     const auto path = own_file(folder, name);
     if (!path) return tl::unexpected(path.error());
     std::error_code ignored;
@@ -119,7 +116,7 @@ Status new_printer(const ProjectFolder& folder, const std::string& from, const s
 }
 
 Status change_printer(const ProjectFolder& folder, const std::string& name, const PrinterChanges& changes) {
-    const std::lock_guard lock(one_change_at_a_time);
+    const std::lock_guard lock(folder.one_change_at_a_time());
     const auto path = own_file(folder, name);
     if (!path) return tl::unexpected(path.error());
     const auto text = text_of(folder, name);

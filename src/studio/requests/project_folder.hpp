@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,10 +41,15 @@ public:
     /// based, or one that this names: "" if it names none. Call it with a checked document.
     [[nodiscard]] std::string stamps_of(std::string_view toml, const std::filesystem::path& file) const;
 
+    /// Held from the reading of a file to its writing: of two changes at once the later one begins with what the former
+    /// has written.
+    [[nodiscard]] std::mutex& one_change_at_a_time() const { return *changes_; }
+
 private:
     [[nodiscard]] bool leads_outside(const std::string& text, const std::filesystem::path& path) const;
     explicit ProjectFolder(std::filesystem::path root) : root_(std::move(root)) {}
-    std::filesystem::path root_;  ///< canonical
+    std::filesystem::path root_;                                            ///< canonical
+    std::shared_ptr<std::mutex> changes_ = std::make_shared<std::mutex>();  ///< of all copies
 };
 
 }  // namespace pliant::studio
