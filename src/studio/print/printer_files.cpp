@@ -60,8 +60,7 @@ Result<std::pair<std::string, std::filesystem::path>> text_of(const ProjectFolde
     if (!path) return tl::unexpected(path.error());
     Result<std::string> text = read_file(*path, largest_file);
     if (!text) return tl::unexpected(text.error());
-    if (!folder.check_texts(*text, *path))
-        return input_error("{}: names a file outside of the project folder", name);
+    if (!folder.check_texts(*text, *path)) return input_error("{}: names a file outside of the project folder", name);
     return std::pair(std::move(*text), *path);
 }
 
@@ -129,8 +128,7 @@ Status change_printer(const ProjectFolder& folder, const std::string& name, cons
     }
     if (const auto printer = machine::parse_printer(next, path->filename()); !printer)
         return tl::unexpected(printer.error());
-    if (!folder.check_texts(next, *path))
-        return input_error("{}: names a file outside of the project folder", name);
+    if (!folder.check_texts(next, *path)) return input_error("{}: names a file outside of the project folder", name);
     return write_file(*path, next);
 }
 

@@ -45,9 +45,8 @@ Response add_entry(Studio& studio, const Request& request) {
         return error_response(422, "list and entry are needed: its keys and their values");
     config::EntryText entry;
     for (const auto& [key, value] : json["entry"].items()) entry.emplace_back(key, toml_text(Json(value)));
-    return done(studio.edit_by([&](const std::string& text) {
-        return config::with_entry(text, json["list"].get<std::string>(), entry);
-    }));
+    return done(studio.edit_by(
+        [&](const std::string& text) { return config::with_entry(text, json["list"].get<std::string>(), entry); }));
 }
 
 Response open_new(Studio& studio, const Request& request) {

@@ -35,8 +35,7 @@ Response take_twin(Studio& studio, const Request& request) {
 
 /// Device and projector as for `pliant print`; a projector folder is created in the project.
 Response take_port(Studio& studio, const Request& request) {
-    if (Status known =
-            check_body(request, {{"device"}, {"projector"}, {"speed", BodyKey::Kind::number}, {"clock"}});
+    if (Status known = check_body(request, {{"device"}, {"projector"}, {"speed", BodyKey::Kind::number}, {"clock"}});
         !known)
         return error_response(known.error());
     const auto job = studio.make().job();
@@ -184,8 +183,8 @@ void add_print_routes(std::vector<Route>& routes) {
     routes.push_back({"GET", "/api/print/report",
                       "HTML report of the current print, or of a journal of the folder: ?name=", "text/html", false,
                       report_page});
-    routes.push_back({"POST", "/api/print/speed", "sets the {\"speed\"} of the virtual printer", json, true,
-                      set_speed, json});
+    routes.push_back(
+        {"POST", "/api/print/speed", "sets the {\"speed\"} of the virtual printer", json, true, set_speed, json});
     routes.push_back({"POST", "/api/print/leave", "disconnects the machine", json, true,
                       [](Studio& s, const Request&) { return done(s.print().give_back()); }});
     routes.push_back({"POST", "/api/print/discard", "ends an interrupted print on the virtual printer for good", json,

@@ -75,8 +75,11 @@ Response probe(Studio& studio, const Request& request) {
 }
 
 Response show_pattern(Studio& studio, const Request& request) {
-    if (Status known = check_body(request, {{"name"}, {"projector"}, {"pattern"}, {"square", BodyKey::Kind::number},
-                                           {"seconds", BodyKey::Kind::number}});
+    if (Status known = check_body(request, {{"name"},
+                                            {"projector"},
+                                            {"pattern"},
+                                            {"square", BodyKey::Kind::number},
+                                            {"seconds", BodyKey::Kind::number}});
         !known)
         return error_response(known.error());
     const Json json = parse_json(request.body);

@@ -459,9 +459,11 @@ TEST_CASE("a job whose file has changed is not printed, saved or shown as the on
     REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"one.zip"})").status == 200);
     CHECK(ask(studio, "GET", "/api/job/layers/3/0").status == 200);
     fs::rename(project.base / "project" / "TWO.ZIP", project.base / "project" / "one.zip");
-    for (const auto& [method, path, body] :
-         {std::tuple("POST", "/api/print/twin", R"({"speed":10})"), {"POST", "/api/job/save", R"({"name":"new.zip"})"},
-          {"GET", "/api/job/file", ""}, {"GET", "/api/job/layers/3/0", ""}, {"GET", "/api/job/part", ""}}) {
+    for (const auto& [method, path, body] : {std::tuple("POST", "/api/print/twin", R"({"speed":10})"),
+                                             {"POST", "/api/job/save", R"({"name":"new.zip"})"},
+                                             {"GET", "/api/job/file", ""},
+                                             {"GET", "/api/job/layers/3/0", ""},
+                                             {"GET", "/api/job/part", ""}}) {
         const Response answer = ask(studio, method, path, body);
         CHECK_MESSAGE(answer.status == 409, path);
         CHECK_MESSAGE(holds(answer.body, "one.zip has changed since it was opened: open it again"), path);
