@@ -134,6 +134,12 @@ tl::unexpected<Error> no_such_printer(const std::string& name) {
 
 }  // namespace
 
+bool is_built_in_printer(const std::string& name) {
+    std::error_code ignored;
+    return is_name(name) && !fs::exists(name, ignored) &&
+           studio::find_file(studio::example_printers(), name) != nullptr;
+}
+
 FileKind kind_of(const fs::path& file) {
     constexpr std::array<std::string_view, 12> geometry{".stl", ".obj", ".ply", ".3mf",  ".step", ".stp",
                                                         ".vtk", ".vtu", ".msh", ".mesh", ".off",  ".inp"};

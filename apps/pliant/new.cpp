@@ -101,6 +101,7 @@ Status make(const NewOptions& options) {
     std::error_code ignored;
     if (fs::exists(file, ignored)) return input_error("{}: exists and is not overwritten; choose another name", file);
     const std::string text = options.name ? renamed(found->text, *options.name) : std::string(found->text);
+    if (fs::path(file).has_parent_path()) fs::create_directories(fs::path(file).parent_path(), ignored);
     if (Status written = write_file(file, text); !written) return written;
     const std::string next = of_robots ? fmt::format("pliant studio {0}   or   pliant simulate {0} -o out", file)
                                        : fmt::format("pliant slice ROBOT.toml --printer {} -o JOB.zip", file);

@@ -112,6 +112,10 @@ Status calibrate_size(const ProjectOptions& options, const Setting& setting) {
         fmt::print("the printer file says {:.3f} um: parts come out {:+.2f} % in size\n", p.pixel_um,
                    100 * (size->pixel_um / p.pixel_um - 1));
     fmt::print("set in its [projector]:\npixel = \"{:.3f} um\"\n", size->pixel_um);
+    constexpr double far_off = 0.2;  // of the size in the printer file
+    if (p.pixel_um > 0 && std::abs(size->pixel_um / p.pixel_um - 1) > far_off)
+        fmt::print(stderr, "warning: that is far from the printer file's {:.3f} um; are the distances in mm?\n",
+                   p.pixel_um);
     if (std::abs(size->off_percent) > 0.2)
         fmt::print(stderr, "warning: pixels are not square to 0.2 %: square the projector to the vat floor first\n");
     return {};

@@ -205,7 +205,7 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
     command.add_option("--turn", order.turn, "X Y Z: rotation in degrees about each axis, in this order")
         ->expected(3)
         ->allow_extra_args(false);
-    command.add_option("--scale", order.scale, "scale factor of the part, 0.01 to 100")->capture_default_str();
+    command.add_option("--scale", order.scale, "scale factor of the part, 0.001 to 1000")->capture_default_str();
     command.add_option("--at", order.at, "X Y: position of the part's centre, in mm from the centre of the platform")
         ->expected(2)
         ->allow_extra_args(false);

@@ -27,7 +27,7 @@ struct SteeredInput {
 /// Options of inverse().
 struct InverseOptions {
     /// Number of starting points, spread over the ranges, that are tried if the search from rest does not reach the
-    /// first waypoint; not negative.
+    /// first waypoint; not negative. Above 0, the nearest of the corners of the ranges and of 16 more points follow.
     int starts = 6;
     /// The result will be written: what InverseResult::write() could not write is refused before the search. Two things
     /// of the same name, which a program would have to name, are an example.

@@ -37,6 +37,21 @@ const Value* find_entry(const Value& table, std::string_view key) {
     return nullptr;
 }
 
+/// A text as "2 mm".
+bool has_unit(const Value& value) {
+    const auto* text = std::get_if<std::string>(&value.data);
+    if (text == nullptr) return false;
+    const std::string_view number = trimmed(*text);
+    const std::size_t digit = number.find_first_not_of("+-.");
+    return digit < number.size() && is_digit(number[digit]) &&
+           std::ranges::any_of(number, [](char c) { return is_letter(c); });
+}
+
+bool any_has_unit(const Value& list) {
+    const auto* entries = std::get_if<Array>(&list.data);
+    return entries != nullptr && std::ranges::any_of(*entries, has_unit);
+}
+
 std::optional<double> as_number(const Value& value) {
     if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return static_cast<double>(*whole);
     if (const auto* real = std::get_if<double>(&value.data); real != nullptr && std::isfinite(*real)) return *real;
@@ -177,7 +192,8 @@ double Reader::number(std::string_view key, double fallback) {
     const Value* value = find(key);
     if (value == nullptr) return fallback;
     if (const auto found = as_number(*value)) return *found;
-    refuse(key, fmt::format("is {}, a finite number is needed", shown(*value)));
+    refuse(key, fmt::format("is {}, a finite number is needed{}", shown(*value),
+                            has_unit(*value) ? ", without a unit" : ""));
     return fallback;
 }
 
@@ -313,7 +329,8 @@ std::vector<Vec3> Reader::vectors(std::string_view key) {
         if (const auto point = as_vector((*list)[i]))
             points.push_back(*point);
         else
-            refuse(key, fmt::format("entry {} is not a point [x, y, z] of finite numbers", i + 1));
+            refuse(key, fmt::format("entry {} is not a point [x, y, z] of finite numbers{}", i + 1,
+                                    any_has_unit((*list)[i]) ? ", without units" : ""));
     }
     return points;
 }

@@ -249,7 +249,7 @@ Result<Document> load(const std::filesystem::path& file) {
 
 Value assigned_value(std::string_view assignment) {
     const std::size_t equals = assignment.find('=');
-    const std::string text(equals == std::string_view::npos ? assignment : assignment.substr(equals + 1));
+    const std::string text(trimmed(equals == std::string_view::npos ? assignment : assignment.substr(equals + 1)));
     Value value;
     value.data = text;
     Result<Document> parsed = parse("value = " + text, "--set");
@@ -261,10 +261,9 @@ Value assigned_value(std::string_view assignment) {
 
 Status set(Document& document, std::string_view assignment) {
     const std::size_t equals = assignment.find('=');
-    if (equals == std::string_view::npos || equals == 0) {
+    const std::string_view key = trimmed(assignment.substr(0, equals));
+    if (equals == std::string_view::npos || key.empty())
         return input_error("--set {}: write KEY=VALUE, as in program.steps=10", assignment);
-    }
-    const std::string_view key = assignment.substr(0, equals);
     const std::vector<std::string> parts = path_parts(key);
     if (parts.size() > max_depth + 1) return input_error("--set {}...: the key has too many parts", key.substr(0, 40));
     Value value = assigned_value(assignment);

@@ -189,7 +189,7 @@ TEST_CASE("--set changes any value, and an unknown key gives the nearest one") {
         document_of("[program]\nsteps = 30\n[[cable]]\nname = \"flexor\"\ntarget = { length_ratio = 0.7 }\n");
     REQUIRE(set(document, "program.steps=5"));
     REQUIRE(set(document, "cable.flexor.target.length_ratio=0.9"));
-    REQUIRE(set(document, "program.solver=newton"));
+    REQUIRE(set(document, " program.solver = newton "));
     Problems problems("test.toml");
     Reader root(document.root, problems);
     Reader program = root.table("program");

@@ -101,8 +101,8 @@ public:
             const auto keys = reader.keys();
             const std::string near = keys.empty() ? "" : nearest_name(keys.front(), kinds);
             reader.problem("", given.empty()
-                                   ? "is not a shape" + (near.empty() ? "; a shape is one of " + join_names(kinds)
-                                                                      : "; did you mean \"" + near + "\"?")
+                                   ? "is not a shape; " + (near.empty() ? "" : "did you mean \"" + near + "\"? ") +
+                                         "a shape is one of " + join_names(kinds)
                                    : "is two shapes at once: " + join_names(given));
             return placeholder();
         }

@@ -44,8 +44,9 @@ sim::Drive drive_for(const Drive& drive, const std::string& name, bool cable) {
                            : drive.by == By::tension ? "N"
                            : drive.by == By::volume  ? "m^3"
                                                      : "J";
-        wrong(fmt::format("{} of {:g} {} is not possible: it must {}", what, drive.value, unit,
-                          positive ? "be above 0" : "not be negative"));
+        wrong(fmt::format("{} of {:g} {} is not possible: it must {}{}", what, drive.value, unit,
+                          positive ? "be above 0" : "not be negative",
+                          drive.by == By::length ? "; a shortening in metres is at most the cable's length" : ""));
     }
     if (drive.by == By::length || drive.by == By::volume) return {DriveKind::measure, drive.value};
     if (drive.by == By::gas) return {DriveKind::gas, drive.value};

@@ -285,6 +285,11 @@ Draft read_draft(Reader& root, const StudyContext& context, const fs::path& file
         draft.samples =
             static_cast<std::size_t>(std::clamp<std::int64_t>(samples, 1, static_cast<std::int64_t>(most_rows)));
         draft.seed = static_cast<std::uint64_t>(std::max<std::int64_t>(seed, 0));
+    } else {
+        for (const char* key : {"samples", "seed"})
+            if (root.raw(key) != nullptr)
+                root.problem(key,
+                             "goes with sobol, latin-hypercube and sensitivity; a grid or table has rows of its own");
     }
     plan.results = read_results(root);
     plan.row_limit_s = root.quantity("row_limit", Dimension::time, 0.0);

@@ -151,6 +151,8 @@ TEST_CASE("a mistake in a study file gives one line: where, and what would be ri
     CHECK(mistake(head + "plan = \"grid\"\n" + tension).find("nothing varies; write [key.NAME]") != std::string::npos);
     CHECK(mistake(head + "plan = \"grid\"\n" + modulus).find("result") != std::string::npos);
     CHECK(mistake(head + "plan = \"sobol\"\n" + modulus + tension).find("samples") != std::string::npos);
+    CHECK(mistake(head + "plan = \"grid\"\nsamples = 4\n" + modulus + tension).find("samples: goes with sobol, ") !=
+          std::string::npos);
     CHECK(mistake(head + "plan = \"grid\"\nkey.a = { set = \"a\", range = [0, 1] }\n" + tension)
               .find("a grid needs its levels") != std::string::npos);
     CHECK(mistake(head + "plan = \"grid\"\nkey.a = { range = [0, 1], levels = 2 }\n" + tension)

@@ -227,8 +227,30 @@ Result<PixelSize> pixel_size(int width_px, int height_px, double x_mm, double y_
     size.y_um = y_mm * 1000 / span.y_px;
     size.pixel_um = (size.x_um + size.y_um) / 2;
     size.off_percent = 100 * (size.x_um / size.y_um - 1);
+    constexpr double most_off_percent = 10;  // no projector is so far from square
+    if (std::fabs(size.off_percent) > most_off_percent)
+        return input_error(
+            "measured {:g} x {:g} mm: the pixels would be {:.1f} um wide and {:.1f} um high; X is along the {} px, Y "
+            "along "
+            "the {} px",
+            x_mm, y_mm, size.x_um, size.y_um, width_px, height_px);
     return size;
 }
+
+namespace {
+
+/// Commas within numbers where blanks or semicolons stand between them.
+bool has_decimal_commas(std::string_view line) {
+    const auto is_digit = [&](std::size_t at) { return at < line.size() && line[at] >= '0' && line[at] <= '9'; };
+    const std::size_t end = line.find_last_not_of(" \t\r");
+    const bool has_others =
+        line.substr(0, end + 1).find_first_of(" \t;", line.find_first_not_of(" \t")) != std::string_view::npos;
+    for (std::size_t at = line.find(','); has_others && at != std::string_view::npos; at = line.find(',', at + 1))
+        if (at > 0 && is_digit(at - 1) && is_digit(at + 1)) return true;
+    return false;
+}
+
+}  // namespace
 
 Result<LightTable> parse_light_table(std::string_view text, std::string_view file) {
     LightTable table;
@@ -237,6 +259,8 @@ Result<LightTable> parse_light_table(std::string_view text, std::string_view fil
         text.remove_prefix(std::min(text.size(), line.size() + 1));
         line = line.substr(0, line.find('#'));
         if (line.find_first_not_of(" \t,;\r") == std::string_view::npos) continue;
+        if (has_decimal_commas(line))
+            return input_error("{}: line {}: numbers have a decimal point, as in 4.1, not a comma", file, number);
         int columns = 0;
         while (line.find_first_not_of(" \t,;\r") != std::string_view::npos) {
             const auto value = read_number(line);

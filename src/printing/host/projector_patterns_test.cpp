@@ -77,6 +77,10 @@ TEST_CASE("the pixel size follows from measured distances") {
     CHECK(skew->pixel_um == near(101, {.relative = 1e-12}));
     CHECK(skew->off_percent == near(2, {.relative = 1e-12}));
     CHECK_FALSE(pixel_size(320, 200, 0, 18));
+    CHECK(
+        pixel_size(320, 200, 18, 28.8).error().message ==
+        "measured 18 x 28.8 mm: the pixels would be 62.5 um wide and 160.0 um high; X is along the 320 px, Y along the "
+        "200 px");
     CHECK_FALSE(pixel_size(320, 200, std::nan(""), 18));
 }
 
@@ -109,6 +113,9 @@ TEST_CASE("an invalid table is refused, by line") {
     CHECK(said("1 2\n3\n").find("light.txt: line 2") == 0);
     CHECK(said("1 2\n3 0\n").find("light.txt: line 2") == 0);
     CHECK(said("1 2\n3 x\n").find("light.txt: line 2") == 0);
+    CHECK(said("4,1 4,8\n4,4 5,1\n") == "light.txt: line 1: numbers have a decimal point, as in 4.1, not a comma");
+    CHECK(said("4,1;4,8\n4,4;5,1\n").find("light.txt: line 1: numbers have") == 0);
+    CHECK(said("  4,5,4 \n4, 5, 4\n") == "read");
     CHECK(said("1 nan\n").find("light.txt: line 1") == 0);
     CHECK(said("1 2\n").find("1 rows of 2") != std::string::npos);
     CHECK(said("").find("0 rows") != std::string::npos);

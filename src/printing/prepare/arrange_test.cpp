@@ -247,7 +247,7 @@ TEST_CASE("--scale and --at scale and move the part") {
     const Box3 aside = done([](Order& o) { o.at = {3, -1.5}; }).box();
     CHECK(aside.low == Vec3{-1000, -3500, 0});
     CHECK(aside.high == Vec3{7000, 500, 3000});
-    CHECK(refused([](Order& o) { o.scale = 0; }) == "--scale: a scale of 0: must be 0.01 to 100");
+    CHECK(refused([](Order& o) { o.scale = 0; }) == "--scale: a scale of 0: must be 0.001 to 1000");
     CHECK(refused([](Order& o) { o.at = {3}; }).find("--at: two numbers in mm") == 0);
     CHECK(refused([](Order& o) { o.at = {3, 1e300}; }).find("--at 3 1e+300: must be -1000 to 1000 mm") == 0);
 }

@@ -92,7 +92,7 @@ bool Room::holds(double x_um, double y_um) const {
 }
 
 Status scale(std::vector<Body>& bodies, double factor) {
-    constexpr double least = 0.01, most = 100;
+    constexpr double least = 0.001, most = 1000;  // between metres and millimetres
     if (!(factor >= least && factor <= most))
         return input_error("a scale of {:.6g}: must be {} to {}", factor, least, most);
     for (Body& body : bodies) {

@@ -33,8 +33,8 @@ TEST_CASE("scaling a part scales surfaces, slices and blends") {
     CHECK(bodies[0].blend->to_um == Vec3{0, 0, 4500});
     CHECK(bodies[1].slices[0].top_um == 225);
     CHECK(bodies[1].slices[0].outlines_um[0][1] == std::array<double, 2>{150, 0});
-    CHECK(scale(bodies, 0).error().message == "a scale of 0: must be 0.01 to 100");
-    CHECK(scale(bodies, 101).error().message == "a scale of 101: must be 0.01 to 100");
+    CHECK(scale(bodies, 0).error().message == "a scale of 0: must be 0.001 to 1000");
+    CHECK(scale(bodies, 1001).error().message == "a scale of 1001: must be 0.001 to 1000");
 }
 
 TEST_CASE("copies stand in the room that a turned image covers") {

@@ -108,6 +108,20 @@ std::string size_text(const Vec3& size) {
     return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", size.x / 1000, size.y / 1000, size.z / 1000);
 }
 
+/// A part drawn in metres and read in millimetres is the usual cause.
+tl::unexpected<Error> too_low(std::span<const Body> bodies, int layer_um) {
+    Box3 box;
+    for (const Body& body : bodies) {
+        if (const Result<Box3> own = bounds(body, "")) {
+            box.add(own->low);
+            box.add(own->high);
+        }
+    }
+    const std::string size =
+        box.empty() ? "" : fmt::format("; the part measures {}, is its unit right?", size_text(box.size()));
+    return input_error("nothing to print: no body reaches the middle of a layer of {} um{}", layer_um, size);
+}
+
 }  // namespace
 
 Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& settings) {
@@ -120,8 +134,7 @@ Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& set
             return tl::unexpected(status.error());
     }
     if (auto status = slicer.check_pairs(); !status) return tl::unexpected(status.error());
-    if (slicer.layer_count_ == 0)
-        return input_error("nothing to print: no body reaches the middle of a layer of {} um", settings.layer_um);
+    if (slicer.layer_count_ == 0) return too_low(bodies, settings.layer_um);
     return slicer;
 }
 

@@ -304,7 +304,9 @@ TEST_CASE("parts outside the image, below the platform or without solid surface 
     CHECK(refused({{"soft", box({-1000, -1000, -100}, {1000, 1000, 500}), ""}}, settings) ==
           "body 1 (soft): reaches 0.100 mm below the platform");
     CHECK(refused({}, settings).find("nothing to print") == 0);
-    CHECK(refused({{"soft", box({0, 0, 0}, {1000, 1000, 20}), ""}}, settings).find("nothing to print") == 0);
+    CHECK(refused({{"soft", box({0, 0, 0}, {1000, 1000, 20}), ""}}, settings) ==
+          "nothing to print: no body reaches the middle of a layer of 50 um; the part measures 1 x 1 x 0.02 mm, is its "
+          "unit right?");
     CHECK(refused({cube}, {{0, 48, 100}, 50, {}}).find("raster of 0 x 48") == 0);
     CHECK(refused({cube}, {{60000, 60000, 100}, 50, {}}).find("2^28") != std::string::npos);
     CHECK(refused({cube}, {{64, 48, std::nan("")}, 50, {}}).find("pixel of nan") == 0);

@@ -22,6 +22,16 @@ MaterialSpec read_one_material(Reader& reader, const std::string& name) {
     return material;
 }
 
+/// A density a thousand times too large is easily written, as in "1040 g/cm^3".
+void note_densities(Robot& robot) {
+    constexpr double densest_kg_m3 = 23e3;  // osmium
+    for (const MaterialSpec& material : robot.materials) {
+        if (material.density_kg_m3 > densest_kg_m3)
+            robot.notes.push_back(fmt::format("material \"{}\" has {:.6g} kg/m^3, more than any substance on earth",
+                                              material.name, material.density_kg_m3));
+    }
+}
+
 void read_materials(Reader& root, Context& context) {
     const config::Value* tables = root.raw("material");
     for (auto& [name, reader] : root.named_tables("material")) {
@@ -43,6 +53,7 @@ void read_materials(Reader& root, Context& context) {
             context.robot.materials.push_back(read_one_material(whole, name));
         }
     }
+    note_densities(context.robot);
 }
 
 /// A length above zero, in length units; 0 where the key is missing.

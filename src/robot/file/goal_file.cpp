@@ -65,6 +65,14 @@ std::vector<std::string> path_columns(const Context& context, const GoalSpec& go
     return names;
 }
 
+/// "x (mm)" for "x_mm", as other tables name their columns; "" if it is nothing like that.
+std::string with_unit_in_brackets(const std::string& name, const std::vector<std::string>& known) {
+    const std::size_t bar = name.rfind('_');
+    if (bar == std::string::npos || !unit_factor(name.substr(bar + 1), Dimension::length)) return "";
+    const std::string bare = name.substr(0, bar);
+    return std::ranges::count(known, bare) > 0 ? fmt::format("{} ({})", bare, name.substr(bar + 1)) : "";
+}
+
 /// Each name once, and none that nothing would read.
 Status check_columns(const CsvTable& table, const std::vector<std::string>& known) {
     std::vector<std::string> names;
@@ -76,6 +84,9 @@ Status check_columns(const CsvTable& table, const std::vector<std::string>& know
         if (name != column && csv_unit(column).empty())
             return input_error_at(table.file, table.header_line, "column \"{}\": its brackets hold no unit", column);
         if (std::ranges::count(known, name) > 0) continue;
+        if (const std::string bracketed = with_unit_in_brackets(name, known); !bracketed.empty())
+            return input_error_at(table.file, table.header_line,
+                                  "column \"{}\" has no meaning in a path; did you mean \"{}\"?", column, bracketed);
         const std::string nearest = nearest_name(name, known);
         if (nearest.empty())
             return input_error_at(table.file, table.header_line,

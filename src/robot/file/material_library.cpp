@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 #include "robot/file/material_file.hpp"
 
@@ -69,13 +70,15 @@ Result<LibraryMaterial> library_material(std::string_view name) {
     return material;
 }
 
-std::string library_hint(std::string_view name) {
+std::string library_hint(std::string_view given) {
+    std::string name = lower_case(given);  // as the library writes names
+    std::ranges::replace(name, ' ', '-');
     std::vector<std::pair<int, std::string>> near;
     for (const LibraryFile& file : library_files()) {
         const int distance = edit_distance(name, file.name);
         const std::string_view stem = file.name.substr(0, file.name.find('-'));
         const bool family =
-            name.size() >= 3 && (file.name.find(name) != std::string_view::npos || name.substr(0, stem.size()) == stem);
+            name.size() >= 3 && (file.name.find(name) != std::string_view::npos || name.starts_with(stem));
         if (family || distance <= static_cast<int>(name.size()) / 3) near.emplace_back(distance, file.name);
     }
     if (near.empty()) return "; \"pliant materials\" lists the library";

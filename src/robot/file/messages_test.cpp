@@ -81,6 +81,10 @@ TEST_CASE("a value that cannot be read gives one message") {
           "program.key[0].flexor: is \"0.9\", a finite number is needed");
     CHECK(only(neo, "[[chamber]]\nname = \"air\"\ninside = [5, 5, 5]\ntarget = { gas_ratio = \"2\" }\n") ==
           "chamber[0].target.gas_ratio: is \"2\", a finite number is needed");
+    CHECK(only(neo, "[[chamber]]\nname = \"air\"\ninside = [5, 5, 5]\ntarget = { gas_ratio = \"2 kPa\" }\n") ==
+          "chamber[0].target.gas_ratio: is \"2 kPa\", a finite number is needed, without a unit");
+    CHECK(
+        only(neo, "[[mass]]\nname = \"m\"\npoint = [\"1 mm\", 1, 1]\nmass = \"1 g\"\n").starts_with("mass[0].point: "));
 }
 
 TEST_CASE("a key that belongs to another kind of joint is not called unknown, and an unknown kind judges none") {
@@ -313,6 +317,17 @@ TEST_CASE("a table where a list of tables belongs is the only thing told") {
           "bar.toml:5: body: is a table; write [[body]] for each");
     CHECK(message(test::replaced(text, "[[fixed]]", "[fixed]")) ==
           "bar.toml:9: fixed: is a table; write [[fixed]] for each");
+}
+
+TEST_CASE("gravity in mm/s^2 and a density a thousand times too large get a note") {
+    CHECK(robot_with("[program]\ngravity = [0, 0, -98.1]\n").notes.empty());
+    CHECK(robot_with("[program]\ngravity = [0, 0, -9810]\n").notes ==
+          std::vector<std::string>{"program.gravity is 9810 m/s^2, 1000 times that of the earth; it is in m/s^2, "
+                                   "whatever length_unit is"});
+    const Result<Robot> dense = parse_robot(head + neo + "density = \"1040 g/cm^3\"\n" + body, "bar.toml");
+    REQUIRE(dense);
+    CHECK(dense->notes == std::vector<std::string>{"material \"soft\" has 1.04e+06 kg/m^3, more than any substance "
+                                                   "on earth"});
 }
 
 TEST_CASE("a body that blends into its own material gets a note") {

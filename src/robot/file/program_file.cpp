@@ -289,6 +289,12 @@ void read_program(config::Reader& root, Context& context) {
     if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1))
         reader.problem("tolerance", "must be between 1e-10 and 0.1");
     robot.gravity_m_s2 = reader.vector("gravity", Vec3{});
+    constexpr double strong_m_s2 = 100;  // ten times that of the earth
+    if (norm(robot.gravity_m_s2) > strong_m_s2)
+        robot.notes.push_back(
+            fmt::format("program.gravity is {:.6g} m/s^2, {:.0f} times that of the earth; it is in m/s^2, "
+                        "whatever length_unit is",
+                        norm(robot.gravity_m_s2), norm(robot.gravity_m_s2) / 9.81));
     if (robot.fluid && robot.fluid->level && robot.gravity_m_s2 == Vec3{} && !reader.unreadable("gravity"))
         root.problem("fluid", "has a level, and nothing says where up is; give program.gravity");
     const std::string solver =

@@ -12,6 +12,7 @@
 
 #include "base/core/config_text.hpp"
 #include "base/core/files.hpp"
+#include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 
 namespace pliant::robot {
@@ -63,7 +64,7 @@ struct AddedName {
 
 /// The entry that this assignment is about to add, if any.
 std::optional<AddedName> added_name(const config::Document& document, std::string_view assignment) {
-    const std::vector<std::string> parts = config::path_parts(assignment.substr(0, assignment.find('=')));
+    const std::vector<std::string> parts = config::path_parts(trimmed(assignment.substr(0, assignment.find('='))));
     if (parts.size() < 2) return std::nullopt;
     const AddedName added{parts[0], parts[1]};
     if (std::ranges::find(tables_of_names, added.kind) == tables_of_names.end()) return std::nullopt;

@@ -112,7 +112,8 @@ bool is_geometry(const fs::path& file) {
     if (!bytes) return false;
     const mesh::GeometryKind kind = mesh::geometry_kind(*bytes);
     if (kind == mesh::GeometryKind::unknown) return false;
-    if (kind == mesh::GeometryKind::step || kind == mesh::GeometryKind::threemf) return true;
+    if (kind == mesh::GeometryKind::step) return true;
+    if (kind == mesh::GeometryKind::threemf) return mesh::open_geometry(file).has_value();  // any zip file may be one
     // Text-based mesh formats are excluded: a robot file with an error may look like one.
     if (bytes->starts_with("solid ") || bytes->starts_with("ply\n")) return true;
     // Any bytes could begin a binary STL: it is one if it can be read.
@@ -128,6 +129,8 @@ Result<Robot> load_robot(const fs::path& file, const std::vector<std::string>& a
             "{}: is geometry, not a robot file; write a robot file that names it, as in geometry = \"{}\" of a "
             "[[body]]",
             file.string(), file.filename().string());
+    if (!document && mesh::geometry_kind_of(file) == mesh::GeometryKind::threemf)
+        return input_error("{}: is a zip archive, such as a job; a robot file is needed here", file.string());
     if (!document) return tl::unexpected(document.error());
     return read_robot(std::move(*document), assignments);
 }

@@ -14,6 +14,7 @@ struct Columns {
     std::size_t strain = 0;
     std::size_t stress = 0;
     bool is_stretch = false;
+    bool has_strain_unit = false;
     double strain_factor = 1;
     double stress_factor = 1;
 };
@@ -59,6 +60,7 @@ Result<Columns> read_header(const CsvTable& table) {
     if (strain_unit.empty() && strain_column.find_first_of("([") != std::string::npos)
         return input_error_at(table.file, table.header_line, "column \"{}\": a unit stands in brackets at its end",
                               strain_column);
+    columns.has_strain_unit = !strain_unit.empty();
     if (strain_unit == "%")
         columns.strain_factor = 0.01;
     else if (!strain_unit.empty() && strain_unit != "-" && strain_unit != "1" && strain_unit != "mm/mm")
@@ -83,6 +85,13 @@ Status read_row(const CsvTable& table, const CsvRow& row, const Columns& columns
         return input_error_at(table.file, row.line,
                               "the stretch is {:.4g}; it is length over rest length, between 0 and 100{}", stretch,
                               columns.is_stretch ? "" : ", and the strain is the stretch less 1");
+    // The softest silicones tear at a strain of 10. A table in percent is easily written without its unit.
+    constexpr double torn = 12;
+    if (!columns.is_stretch && !columns.has_strain_unit && *strain > torn)
+        return input_error_at(table.file, row.line,
+                              "a strain of {:.6g} is {:.6g} %; name the column \"strain (%)\" if it is in percent, "
+                              "\"strain (-)\" if not",
+                              *strain, 100 * *strain);
     test.stretch.push_back(stretch);
     test.stress_Pa.push_back(*stress * columns.stress_factor);
     return {};

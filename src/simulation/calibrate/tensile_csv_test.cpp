@@ -49,6 +49,10 @@ TEST_CASE("errors in a tensile table name the line") {
     check_problem("stretch;stress (MPa)\n1,1;2\n", "write numbers with a decimal point");
     check_problem("stretch,stress (MPa)\n0,2\n", "test.csv:2: the stretch is 0");
     check_problem("strain,stress (MPa)\n-1.5,2\n", "the stretch is -0.5");
+    check_problem("strain,stress (MPa)\n0,0\n5,0.05\n50,0.3\n",
+                  "test.csv:4: a strain of 50 is 5000 %; name the column \"strain (%)\" if it is in percent, \"strain "
+                  "(-)\" if not");
+    CHECK(parse_tensile_csv("strain (-),stress (MPa)\n20,2\n", "a.csv"));
     check_problem("stretch,stress (MPa)\nnan,2\n", "is not a number");
     check_problem("stretch,stress (MPa)\n1e999,2\n", "is not a number");
 }

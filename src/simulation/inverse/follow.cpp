@@ -30,6 +30,24 @@ Bounds bounds_from(const Seeker& seeker, const Point& before, double seconds) {
     return bounds;
 }
 
+/// The corners of the unit cube or, where these are many, its points with one input at one of its ends and all others
+/// at rest.
+std::vector<Eigen::VectorXd> corners(const Eigen::VectorXd& rest) {
+    constexpr Eigen::Index few = 4;
+    std::vector<Eigen::VectorXd> points;
+    if (rest.size() <= few) {
+        for (unsigned corner = 0; corner < (1U << static_cast<unsigned>(rest.size())); ++corner) {
+            Eigen::VectorXd& point = points.emplace_back(rest.size());
+            for (Eigen::Index i = 0; i < rest.size(); ++i) point[i] = (corner >> static_cast<unsigned>(i)) & 1U;
+        }
+        return points;
+    }
+    for (Eigen::Index i = 0; i < rest.size(); ++i) {
+        for (const double end : {0.0, 1.0}) points.emplace_back(rest)[i] = end;
+    }
+    return points;
+}
+
 class Follower {
 public:
     Follower(Stepper& stepper, const InverseTask& task, const FollowOptions& options, Progress& progress)
@@ -58,6 +76,26 @@ private:
         result_.message = fmt::format("cancelled at waypoint {} of {}", waypoint + 1, task_.waypoints());
     }
 
+    /// Inputs in whose equilibria the goals of the first waypoint are nearest, of the corners of the ranges and of more
+    /// points spread over them; the nearest first. Goals out of reach are often nearest to a corner, and searches from
+    /// elsewhere may end in another one.
+    std::vector<Eigen::VectorXd> nearest_places(const Point& rest, const Bounds& all) {
+        constexpr int more_points = 16;
+        constexpr std::size_t tried = 4;
+        const Eigen::Index size = seeker_.space().size();
+        std::vector<Eigen::VectorXd> places = corners(rest.inputs);
+        for (int n = 1; n <= more_points; ++n) places.push_back(spread_point(options_.starts + n, size));
+        std::vector<std::pair<double, std::size_t>> by_cost;
+        for (std::size_t k = 0; k < places.size() && !progress_.cancelled(); ++k) {
+            if (const auto at = seeker_.move(rest, places[k], task_.times[0], all, progress_))
+                by_cost.emplace_back(seeker_.cost(*at, rest, 0, all), k);
+        }
+        std::ranges::sort(by_cost);
+        std::vector<Eigen::VectorXd> nearest;
+        for (std::size_t k = 0; k < std::min(tried, by_cost.size()); ++k) nearest.push_back(places[by_cost[k].second]);
+        return nearest;
+    }
+
     std::optional<Found> first() {
         const Point rest{stepper_.rest(), seeker_.space().rest()};
         std::string why;
@@ -66,21 +104,26 @@ private:
         std::optional<Found> best;
         if (begin) best = seeker_.seek(*begin, rest, 0, all, progress_);
         const double from_rest = best ? best->cost : 0;
-        for (int n = 0; n < options_.starts && !(best && best->reached) && !progress_.cancelled(); ++n) {
-            const auto start =
-                seeker_.move(rest, spread_point(n + 1, seeker_.space().size()), task_.times[0], all, progress_);
-            if (!start) continue;
+        const auto is_done = [&] { return (best && best->reached) || progress_.cancelled(); };
+        const auto try_from = [&](const Eigen::VectorXd& inputs, const std::string& name) {
+            const auto start = seeker_.move(rest, inputs, task_.times[0], all, progress_);
+            if (!start) return;
             Found other = seeker_.seek(*start, rest, 0, all, progress_);
             // Far goals are missed by much anyway, and nearer by a thousandth is nearer; less may be the solver's
             // noise.
             constexpr double clearly = 0.999;
-            if (best && !other.reached && !(other.cost < clearly * best->cost)) continue;
+            if (best && !other.reached && !(other.cost < clearly * best->cost)) return;
             if (begin && (other.reached || other.cost < clearly * from_rest))
-                note_ = fmt::format(
-                    "from rest the path to the first waypoint ended further away; start {} of {} spread over the "
-                    "ranges came nearer",
-                    n + 1, options_.starts);
+                note_ =
+                    fmt::format("from rest the path to the first waypoint ended further away; {} came nearer", name);
             best = std::move(other);
+        };
+        for (int n = 0; n < options_.starts && !is_done(); ++n)
+            try_from(spread_point(n + 1, seeker_.space().size()),
+                     fmt::format("start {} of {} spread over the ranges", n + 1, options_.starts));
+        if (options_.starts > 0 && !is_done()) {
+            for (const Eigen::VectorXd& inputs : nearest_places(rest, all))
+                if (!is_done()) try_from(inputs, "a start from the nearest of many more equilibria");
         }
         if (!note_.empty()) result_.notes.push_back(note_);
         if (progress_.cancelled() && !(best && best->reached)) {
@@ -167,7 +210,7 @@ bool Waypoint::is_unfinished() const {
 std::vector<std::string> reasons(const Waypoint& waypoint) {
     std::vector<std::string> lines;
     for (const Limit& limit : waypoint.limits) lines.push_back(text(limit));
-    if (!waypoint.reached && lines.empty()) lines.emplace_back("the actuators move the robot in other directions only");
+    if (!waypoint.reached && lines.empty()) lines.emplace_back("no small change of the inputs brings it nearer");
     return lines;
 }
 

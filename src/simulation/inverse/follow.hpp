@@ -37,7 +37,7 @@ struct InverseResult {
 
 struct FollowOptions {
     /// Number of starting points, spread over the ranges, that are tried if the first waypoint is not reached from
-    /// rest.
+    /// rest. Above 0, searches follow from the nearest of the corners of the ranges and of more points.
     int starts = 6;
 };
 

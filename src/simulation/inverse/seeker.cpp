@@ -87,6 +87,11 @@ std::optional<Point> Seeker::move(const Point& from, const Eigen::VectorXd& inpu
     return to;
 }
 
+double Seeker::cost(const Point& at, const Point& before, std::size_t waypoint, const Bounds& bounds) const {
+    Search search{waypoint, &bounds, before, at, {}};
+    return cost_of(search, search.now, search.residuals);
+}
+
 double Seeker::cost_of(const Search& search, const Point& point, Eigen::VectorXd& residuals) const {
     residuals = rows_.values(point.robot, point.inputs, search.waypoint, search.price);
     return 0.5 * residuals.squaredNorm();
@@ -404,6 +409,11 @@ std::vector<Eigen::VectorXd> Seeker::gradients_of_goals(const Search& search) {
             if (goal_of_row[r] == g) own[at] = search.residuals[at];
         }
         gradients.push_back(sensitivity_->multiply_transposed(own));
+        for (Eigen::Index i = 0; i < space_.size(); ++i) {
+            // The length of a slack cable changes nothing, while a tension would.
+            if (!space_.is_slack(search.now.robot, i) || pulls_[static_cast<std::size_t>(i)]) continue;
+            gradients.back()[i] = sensitivity_->by_tensions(own, {space_.input(i).actuator})[0];
+        }
     }
     return gradients;
 }

@@ -82,6 +82,9 @@ public:
     [[nodiscard]] Found seek(const Point& start, const Point& before, std::size_t waypoint, const Bounds& bounds,
                              const Progress& progress);
 
+    /// Half the sum of the squared misses of the goals at a state, each in tolerances: what seek() makes small.
+    [[nodiscard]] double cost(const Point& at, const Point& before, std::size_t waypoint, const Bounds& bounds) const;
+
 private:
     struct Search;
     struct Trial;

@@ -184,7 +184,7 @@ function Waypoint({ at }: { at: WaypointFound }) {
         </button>
       </div>
       <p class="quiet">{values.map(([name, value]) => `${name} ${+value.toPrecision(4)}${units[kinds[name]] ? ` ${units[kinds[name]]}` : ''}`).join(', ')}</p>
-      {!at.reached && <p class="limit">{at.reasons.join('; ') || 'the actuators move it in other directions only'}</p>}
+      {!at.reached && <p class="limit">{at.reasons.join('; ') || 'no small change of the inputs brings it nearer'}</p>}
     </li>
   );
 }

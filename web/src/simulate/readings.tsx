@@ -44,7 +44,7 @@ export function Readings() {
           <tr class="limits" data-testid="lead-limits">
             <td colSpan={5}>
               Out of reach, this is the nearest point:{' '}
-              {shown.lead.limits.join('; ') || 'the actuators move it in other directions only'}
+              {shown.lead.limits.join('; ') || 'no small change of the inputs brings it nearer'}
             </td>
           </tr>
         )}
