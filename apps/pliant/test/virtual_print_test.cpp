@@ -204,7 +204,10 @@ TEST_CASE("a virtual print cancelled anywhere parks: no vat on the hooks, pump o
         const Status status = print->print(cancel);
         REQUIRE_FALSE(status);
         CHECK(status.error().cause == Cause::cancelled);
-        CHECK(print->records().value().back().kind == "cancel");
+        const auto records = print->records().value();
+        // While it connects, there is nothing to be cancelled.
+        if (looks > 0) REQUIRE_FALSE(records.empty());
+        if (!records.empty()) CHECK(records.back().kind == "cancel");
         CHECK_FALSE(print->twin().interlock().hooked_vat());
         CHECK_FALSE(print->twin().interlock().pump_runs());
         CHECK(print->twin().log().violations.empty());

@@ -138,7 +138,9 @@ void add_paths(const config::Value& value, const fs::path& folder, std::vector<f
 fs::path readable_path(const fs::path& path) {
     std::error_code ignored;
     fs::path shorter = path.lexically_normal();
-    return fs::equivalent(path, shorter, ignored) ? shorter : path;
+    // Folders are compared, since there may be no file.
+    const auto folder_of = [](const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; };
+    return fs::equivalent(folder_of(path), folder_of(shorter), ignored) ? shorter : path;
 }
 
 fs::path beside(const fs::path& file, const std::string& name) {
