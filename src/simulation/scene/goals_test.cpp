@@ -145,7 +145,7 @@ TEST_CASE("a path's times have units, and columns that nothing would read or tha
     refused("x,x,y,z", "there are two columns \"x\"");
     refused("x (cm),x (mm),y,z", "there are two columns \"x\"");
     refused("tiem,x,y,z", "column \"tiem\" has no meaning in a path; did you mean \"time\"?");
-    refused("x_mm,y_mm,z_mm", "column \"x_mm\" has no meaning in a path; did you mean \"x (mm)\"?");
+    refused("x_mm,y_mm,z_mm,time", "column \"x_mm\" has no meaning in a path; did you mean \"x (mm)\"?");
     refused("effort,x,y,z", "column \"effort\" has no meaning in a path; possible are time, x, y, z, tip_x");
 }
 

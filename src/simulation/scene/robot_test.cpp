@@ -709,9 +709,10 @@ TEST_CASE("a geometry file given as a robot is recognised as one; a robot file w
         REQUIRE_FALSE(robot);
         return robot.error().message;
     };
-    for (const std::string& content :
-         {std::string("solid x\nfacet normal 0 0 1\n"), std::string("ISO-10303-21;\n"), std::string("PK\x03\x04...")})
+    for (const char* content : {"solid x\nfacet normal 0 0 1\n", "ISO-10303-21;\n"})
         CHECK(message("part.stl", content).find("is geometry, not a robot file") != std::string::npos);
+    CHECK(message("part.3mf", "PK\x03\x04...").find("is a zip archive, such as a job; a robot file is needed here") !=
+          std::string::npos);
     std::string binary = std::string(80, ' ') + std::string("\x64\0\0\0", 4);  // 100 facets
     binary += std::string(100 * 50, '\0');
     CHECK(message("part.stl", binary).find("is geometry, not a robot file") != std::string::npos);
