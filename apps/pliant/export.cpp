@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
@@ -46,9 +47,21 @@ void tell_files(const ExportOptions& options, const std::vector<std::filesystem:
     }
 }
 
-Status export_robot(const ExportOptions& options) {
+/// A folder with the name of a file would be looked for as one.
+Status check_folder(const std::string& folder) {
+    const std::string extension = lower_extension(folder);
+    for (const char* of_file : {".sl1", ".zip", ".nanodlp"}) {
+        if (extension == of_file)
+            return input_error("-o {}: is for a folder, which gets a file or folder for each material; leave out {}",
+                               folder, of_file);
+    }
+    return {};
+}
+
+Status export_images(const ExportOptions& options) {
     const Result<job::Format> format = job::format_from(options.format);
     if (!format) return input_error("--as: {}", format.error().message);
+    if (Status folder = check_folder(options.folder); !folder) return folder;
     auto progress = terminal_progress(options.output);
     on_signal(OnSignal::ask_twice);  // a partial file must be removed
     const Result<operate::OpenJob> job = read_job(options.job);
@@ -75,7 +88,7 @@ void add_export(CLI::App& app, int& status) {
         ->required();
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant export gripper.zip --as sl1 -o stacks");
-    on_call(*command, status, [options] { return export_robot(*options); });
+    on_call(*command, status, [options] { return export_images(*options); });
 }
 
 }  // namespace pliant::app

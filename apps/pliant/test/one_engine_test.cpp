@@ -231,6 +231,7 @@ TEST_CASE("an option that would do nothing is refused") {
              {"print halves.zip --port none --projector . -o r.json", "-o goes with --twin"},
              {"check halves.zip --cancel-after 3", "--cancel-after ends a G-code program"},
              {"check halves.zip --port none", "--port goes with --firmware"},
+             {"export halves.zip --as sl1 -o stack.sl1", "-o stack.sl1: is for a folder"},
          }) {
         CAPTURE(call);
         CHECK(b.shell("$PLIANT " + call, "said") == 2);
