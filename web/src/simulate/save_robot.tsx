@@ -31,9 +31,9 @@ export function SaveQuestion() {
         <p>
           <b>{name}</b> is no longer as it was opened or saved here. Overwriting it discards those changes; opening it again discards yours.
         </p>
-        <div class="row left">
+        <div class="row left wrap">
           <button class="primary" ref={(b) => b?.focus()} onClick={close} data-testid="keep-unsaved">
-            Leave it unsaved
+            Leave unsaved
           </button>
           <button
             class="danger"
@@ -43,7 +43,7 @@ export function SaveQuestion() {
               void saveRobot('', true);
             }}
           >
-            Overwrite the file
+            Overwrite
           </button>
           <button
             class="danger"
@@ -53,7 +53,7 @@ export function SaveQuestion() {
               void post('/api/open', { name });
             }}
           >
-            Open it again
+            Open again
           </button>
         </div>
       </div>
