@@ -5,7 +5,7 @@ import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileS
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, readRobot, settled, startBrowser, startStudio } from './studio.mjs';
+import { openPage, readRobot, settled, startBrowser, startStudio, typeRobot } from './studio.mjs';
 import { boxStl } from './shapes.mjs';
 
 const example = (name) => new URL(`../../examples/${name}`, import.meta.url).pathname;
@@ -167,6 +167,39 @@ test('unreadable files, existing files and invalid names are refused in one line
   await page.waitForFunction((b) => window.pliant.robotText.value !== b, before);
   assert.match(await readRobot(page), /\[\[body\]\]\nname = "part"\nmaterial = "dragon-skin-30"\ngeometry = "part.stl"\nplace = \{ scale = 10 \}/);
   assert.deepEqual(wrong.filter((w) => !/422|409/.test(w)), []);
+});
+
+test('a file that was changed elsewhere is saved over only after a question', async (t) => {
+  writeFileSync(join(folder, 'shared.toml'), block('1 MPa'));
+  const own = await startStudio(['shared.toml'], folder);
+  t.after(() => own.stop());
+  const { page, wrong } = await openPage(browser, own.address, t);
+  await settled(page);
+  await page.getByTestId('tab-file').click();
+  const there = () => readFileSync(join(folder, 'shared.toml'), 'utf8');
+  const asked = page.getByTestId('changed-question');
+  const changed = async (modulus) => {
+    await typeRobot(page, block(modulus));
+    await rebuilt(page, () => page.getByTestId('apply').click());
+    writeFileSync(join(folder, 'shared.toml'), `# a colleague\n${block('5 MPa')}`);
+    await page.getByRole('button', { name: 'Save', exact: true }).click();
+    await asked.waitFor();
+    const { card, buttons } = await asked.evaluate((e) => ({ card: e.getBoundingClientRect().right, buttons: [...e.querySelectorAll('button')].map((b) => b.getBoundingClientRect().right) }));
+    assert.ok(buttons.every((right) => right < card), 'the buttons fit');
+  };
+  await changed('2 MPa');
+  await page.getByTestId('keep-unsaved').click();
+  await asked.waitFor({ state: 'detached' });
+  assert.match(there(), /^# a colleague/);
+  await changed('3 MPa');
+  await page.getByTestId('overwrite').click();
+  await page.waitForFunction(() => !document.querySelector('[data-testid=changed-question]'));
+  for (let k = 0; k < 100 && there() !== block('3 MPa'); ++k) await page.waitForTimeout(50);
+  assert.equal(there(), block('3 MPa'));
+  await changed('4 MPa');
+  await rebuilt(page, () => page.getByTestId('open-again').click());
+  assert.match(await readRobot(page), /^# a colleague\n(.|\n)*"5 MPa"/);
+  assert.deepEqual(wrong.filter((w) => !/409/.test(w)), []);
 });
 
 test('a chamber is made from a drawn box or from a cavity clicked on, and both can be undone', async (t) => {
