@@ -119,9 +119,10 @@ std::vector<std::string> built_in_names() {
     return names;
 }
 
-/// True for a word that could be the name of a printer, not of a file.
+/// True for a word that could be the name of a printer, and is not that of a file.
 bool is_name(const std::string& word) {
-    return word.find_first_of("./\\") == std::string::npos;
+    std::error_code ignored;
+    return word.find_first_of("./\\") == std::string::npos && !fs::exists(word, ignored);
 }
 
 tl::unexpected<Error> no_such_printer(const std::string& name) {
@@ -135,9 +136,7 @@ tl::unexpected<Error> no_such_printer(const std::string& name) {
 }  // namespace
 
 bool is_built_in_printer(const std::string& name) {
-    std::error_code ignored;
-    return is_name(name) && !fs::exists(name, ignored) &&
-           studio::find_file(studio::example_printers(), name) != nullptr;
+    return is_name(name) && studio::find_file(studio::example_printers(), name) != nullptr;
 }
 
 FileKind kind_of(const fs::path& file) {
@@ -161,9 +160,8 @@ Status expect(FileKind needed, const std::string& file) {
 }
 
 Result<PrinterText> read_printer_file(const std::string& name) {
-    std::error_code ignored;
     std::string text;
-    if (is_name(name) && !std::filesystem::exists(name, ignored)) {
+    if (is_name(name)) {
         const studio::BuiltInFile* file = studio::find_file(studio::example_printers(), name);
         if (file == nullptr) return no_such_printer(name);
         text = std::string(file->text);

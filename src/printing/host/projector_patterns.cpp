@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 
 namespace pliant::host {
@@ -231,8 +232,7 @@ Result<PixelSize> pixel_size(int width_px, int height_px, double x_mm, double y_
     if (std::fabs(size.off_percent) > most_off_percent)
         return input_error(
             "measured {:g} x {:g} mm: the pixels would be {:.1f} um wide and {:.1f} um high; X is along the {} px, Y "
-            "along "
-            "the {} px",
+            "along the {} px",
             x_mm, y_mm, size.x_um, size.y_um, width_px, height_px);
     return size;
 }
@@ -241,12 +241,11 @@ namespace {
 
 /// Commas within numbers where blanks or semicolons stand between them.
 bool has_decimal_commas(std::string_view line) {
-    const auto is_digit = [&](std::size_t at) { return at < line.size() && line[at] >= '0' && line[at] <= '9'; };
     const std::size_t end = line.find_last_not_of(" \t\r");
     const bool has_others =
         line.substr(0, end + 1).find_first_of(" \t;", line.find_first_not_of(" \t")) != std::string_view::npos;
     for (std::size_t at = line.find(','); has_others && at != std::string_view::npos; at = line.find(',', at + 1))
-        if (at > 0 && is_digit(at - 1) && is_digit(at + 1)) return true;
+        if (at > 0 && at + 1 < line.size() && is_digit(line[at - 1]) && is_digit(line[at + 1])) return true;
     return false;
 }
 

@@ -12,6 +12,7 @@
 #include "printing/slice/blend.hpp"
 #include "printing/slice/layer_text.hpp"
 #include "printing/slice/mask.hpp"
+#include "printing/slice/place.hpp"
 #include "printing/slice/raster_frame.hpp"
 #include "printing/slice/repair.hpp"
 
@@ -110,15 +111,9 @@ std::string size_text(const Vec3& size) {
 
 /// A part drawn in metres and read in millimetres is the usual cause.
 tl::unexpected<Error> too_low(std::span<const Body> bodies, int layer_um) {
-    Box3 box;
-    for (const Body& body : bodies) {
-        if (const Result<Box3> own = bounds(body, "")) {
-            box.add(own->low);
-            box.add(own->high);
-        }
-    }
+    const Result<Box3> box = bounds_of_all(bodies);
     const std::string size =
-        box.empty() ? "" : fmt::format("; the part measures {}, is its unit right?", size_text(box.size()));
+        box && !box->empty() ? fmt::format("; the part measures {}, is its unit right?", size_text(box->size())) : "";
     return input_error("nothing to print: no body reaches the middle of a layer of {} um{}", layer_um, size);
 }
 

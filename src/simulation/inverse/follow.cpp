@@ -84,11 +84,16 @@ private:
         constexpr std::size_t tried = 4;
         const Eigen::Index size = seeker_.space().size();
         std::vector<Eigen::VectorXd> places = corners(rest.inputs);
+        constexpr double same = 1e-9;
+        const auto is_rest = [&](const Eigen::VectorXd& p) {
+            return (p - rest.inputs).lpNorm<Eigen::Infinity>() < same;
+        };
+        std::erase_if(places, is_rest);  // the search began there
         for (int n = 1; n <= more_points; ++n) places.push_back(spread_point(options_.starts + n, size));
         std::vector<std::pair<double, std::size_t>> by_cost;
         for (std::size_t k = 0; k < places.size() && !progress_.cancelled(); ++k) {
             if (const auto at = seeker_.move(rest, places[k], task_.times[0], all, progress_))
-                by_cost.emplace_back(seeker_.cost(*at, rest, 0, all), k);
+                by_cost.emplace_back(seeker_.cost(*at, 0), k);
         }
         std::ranges::sort(by_cost);
         std::vector<Eigen::VectorXd> nearest;

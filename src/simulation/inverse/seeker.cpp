@@ -87,9 +87,8 @@ std::optional<Point> Seeker::move(const Point& from, const Eigen::VectorXd& inpu
     return to;
 }
 
-double Seeker::cost(const Point& at, const Point& before, std::size_t waypoint, const Bounds& bounds) const {
-    Search search{waypoint, &bounds, before, at, {}};
-    return cost_of(search, search.now, search.residuals);
+double Seeker::cost(const Point& at, std::size_t waypoint) const {
+    return 0.5 * rows_.values(at.robot, at.inputs, waypoint, PriceTerm{}).squaredNorm();
 }
 
 double Seeker::cost_of(const Search& search, const Point& point, Eigen::VectorXd& residuals) const {

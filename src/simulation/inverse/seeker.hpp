@@ -83,7 +83,7 @@ public:
                              const Progress& progress);
 
     /// Half the sum of the squared misses of the goals at a state, each in tolerances: what seek() makes small.
-    [[nodiscard]] double cost(const Point& at, const Point& before, std::size_t waypoint, const Bounds& bounds) const;
+    [[nodiscard]] double cost(const Point& at, std::size_t waypoint) const;
 
 private:
     struct Search;

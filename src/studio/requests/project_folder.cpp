@@ -82,11 +82,15 @@ struct Folder {
 void names_in(const config::Document& document, const Folder& folder, const Visit& visit) {
     const bool is_based = base_of(document) != nullptr;
     const auto visit_text = [&](const std::string& text) { visit(folder.named(text)); };
+    const auto visit_assignment = [&](const std::string& text) {
+        visit_texts(config::assigned_value(text), visit_text);
+    };
     for (const auto& [key, value] : std::get<config::Table>(document.root.data)) {
-        if (!is_based || (key != "robot" && key != "set")) visit_texts(value, visit_text);
-        if (!is_based || key != "set") continue;
-        visit_texts(
-            value, [&](const std::string& assignment) { visit_texts(config::assigned_value(assignment), visit_text); });
+        if (is_based && key == "robot") continue;
+        if (is_based && key == "set")
+            visit_texts(value, visit_assignment);
+        else
+            visit_texts(value, visit_text);
     }
 }
 
