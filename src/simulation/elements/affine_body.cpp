@@ -1,6 +1,7 @@
 #include "simulation/elements/affine_body.hpp"
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
@@ -136,6 +137,21 @@ void AffineBody::add_blocks(const std::function<Matrix3(const Matrix3&)>& change
         }
         return block;
     });
+}
+
+void AffineBody::add_hold(double stiffness_N_m, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+                          std::span<double> values) const {
+    constexpr double share = 1.0 / 4;  // of each node in their mean
+    add_node_blocks(nodes_, index, pattern, values, [&](std::size_t a, std::size_t b) -> Matrix3 {
+        return stiffness_N_m * ((a == b ? 1 : 0) - share) * Matrix3::Identity();
+    });
+}
+
+double AffineBody::size(std::span<const double> x) const {
+    const Vector3 mean = centre(x);
+    double sum = 0;
+    for (const int node : nodes_) sum += (linalg::view(x, node) - mean).squaredNorm();
+    return std::sqrt(sum / 4);
 }
 
 void AffineBody::append_clique(const std::vector<int>& index, linalg::Lists& cliques) const {

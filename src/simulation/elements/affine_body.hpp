@@ -32,6 +32,12 @@ public:
     void add_hessian(std::span<const double> x, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                      std::span<double> values, bool project) const;
     void append_clique(const std::vector<int>& index, linalg::Lists& cliques) const;
+    /// As add_hessian(), for springs of `stiffness_N_m` between each node and the mean of the nodes: they resist a
+    /// rotation and a stretch, and no translation.
+    void add_hold(double stiffness_N_m, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+                  std::span<double> values) const;
+    /// Root of the mean squared distance of the nodes from their mean, m.
+    [[nodiscard]] double size(std::span<const double> x) const;
 
     // An energy-conserving step from `start` (3n) to x: with G = AᵀA − 1, Δ = A − A_start and the mean stress
     // S = k (G + G_start) / 2, the gradient (A + A_start)/2 · S does the work E(x) − E(start) along Δ, and a rotation

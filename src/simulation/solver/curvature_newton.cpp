@@ -13,6 +13,7 @@
 #include "simulation/solver/corner_nesting.hpp"
 #include "simulation/solver/curvature.hpp"
 #include "simulation/solver/factor_without_contact.hpp"
+#include "simulation/solver/object_holds.hpp"
 #include "simulation/solver/step_memory.hpp"
 #include "simulation/solver/tangent_inverse.hpp"
 
@@ -406,6 +407,7 @@ private:
         values.resize(layout_->pattern.entries());
         parallel_clear(values.span());
         system_->add_tangent(tangent_->state, tangent_->controls, *layout_, values.span(), project);
+        add_object_holds(*system_, tangent_->state, tangent_->controls, *layout_, values.span());
     }
 
     [[nodiscard]] bool starts_on_two_levels() const {

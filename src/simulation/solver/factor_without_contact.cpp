@@ -1,6 +1,7 @@
 #include "simulation/solver/factor_without_contact.hpp"
 
 #include "base/core/parallel.hpp"
+#include "simulation/solver/object_holds.hpp"
 
 namespace pliant::sim {
 
@@ -31,6 +32,7 @@ bool FactorWithoutContact::factorise(const SolverMemory::Tangent& tangent, bool 
     parallel_clear(values_.span());
     system_->add_tangent(tangent.state, tangent.controls, layout, values_.span(), project,
                          TangentParts::without_contact);
+    add_object_holds(*system_, tangent.state, tangent.controls, layout, values_.span());
     if (!factor_) factor_.emplace(laplacian_->analysis(), 3, linalg::Precision::double_);
     return factor_->factorise(values_.span());
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/core/boxes.hpp"
 #include "base/core/counted.hpp"
 #include "base/linalg/cholesky.hpp"
 #include "base/linalg/dense.hpp"
@@ -61,10 +62,11 @@ public:
         const Direction direction = find_direction(terms);
         if (!direction.dx.allFinite()) return false;
         SearchLine line = line_along(direction);
-        const bool whole = line.longest() == 1;
-        if (whole && search(direction, line, {1, 0.5})) return true;
-        if (step_through_contact(terms, !whole)) return true;
-        return search(direction, line, {whole ? 0.5 : line.longest(), curvature_.smallest_share() * line.longest()});
+        const bool blocked = line.is_blocked();
+        const double longest = line.longest();
+        if (!blocked && search(direction, line, {longest, 0.5 * longest})) return true;
+        if (step_through_contact(terms, blocked)) return true;
+        return search(direction, line, {blocked ? longest : 0.5 * longest, curvature_.smallest_share() * longest});
     }
 
 private:
@@ -343,26 +345,40 @@ private:
         return found.has_value();
     }
 
-    /// The path of a direction. The solver's retraction may rotate the body; if that path meets something, the straight
-    /// one is used, up to the largest step without contact.
+    /// The path of a direction, as far as the robot is large: what hangs without tension has next to no stiffness, and
+    /// its direction may be many times longer. The solver's retraction may rotate the body; if that path meets
+    /// something, the straight one is used, up to the largest step without contact.
     class SearchLine {
     public:
-        SearchLine(const StepSolver& solver, Eigen::VectorXd motion) : solver_(solver), motion_(std::move(motion)) {
-            rotated_ = free_end(1);
-            if (!rotated_) longest_ = solver_.system_.largest_step(solver_.state_.x, motion_, solver_.controls_);
+        SearchLine(const StepSolver& solver, Eigen::VectorXd motion)
+            : solver_(solver), motion_(std::move(motion)), whole_(share_within_reach(solver.state_.x, motion_)) {
+            rotated_ = free_end(whole_);
+            longest_ = rotated_ ? whole_ : straight_share(whole_) * whole_;
         }
         [[nodiscard]] double longest() const { return longest_; }
+        /// By something that the straight path meets.
+        [[nodiscard]] bool is_blocked() const { return longest_ < whole_; }
         /// Precondition: alpha is at most longest(), and decreases from call to call.
         [[nodiscard]] Eigen::VectorXd at(double alpha) {
-            if (alpha == 1 && rotated_) return *std::exchange(rotated_, std::nullopt);
+            if (alpha == whole_ && rotated_) return *std::exchange(rotated_, std::nullopt);
             if (std::optional<Eigen::VectorXd> end = free_end(alpha)) return std::move(*end);
             // The straight path is known to be free up to longest() only if the whole rotated path was not free.
-            const double share =
-                longest_ < 1 ? 1 : solver_.system_.largest_step(solver_.state_.x, alpha * motion_, solver_.controls_);
+            const double share = is_blocked() ? 1 : straight_share(alpha);
             return solver_.state_.x + share * alpha * motion_;
         }
 
     private:
+        [[nodiscard]] static double share_within_reach(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) {
+            const double reach_m = bounds_of(linalg::points_of(x)).diagonal();
+            const double longest_m = motion.reshaped(3, motion.size() / 3).colwise().norm().maxCoeff();
+            return longest_m > reach_m ? reach_m / longest_m : 1;
+        }
+
+        /// Of the straight path for this share of the direction: what meets nothing.
+        [[nodiscard]] double straight_share(double alpha) const {
+            return solver_.system_.largest_step(solver_.state_.x, alpha * motion_, solver_.controls_);
+        }
+
         /// End of the retraction for this share, if its path meets nothing.
         [[nodiscard]] std::optional<Eigen::VectorXd> free_end(double alpha) const {
             const Eigen::VectorXd& x = solver_.state_.x;
@@ -373,8 +389,9 @@ private:
 
         const StepSolver& solver_;
         Eigen::VectorXd motion_;
-        std::optional<Eigen::VectorXd> rotated_;  ///< end of the whole retraction
-        double longest_ = 1;
+        double whole_;                            ///< share of the direction that is looked at
+        std::optional<Eigen::VectorXd> rotated_;  ///< end of its retraction
+        double longest_;                          ///< share that meets nothing
     };
 
     void accept(LineSearch::Found found) {
