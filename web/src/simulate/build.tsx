@@ -231,7 +231,7 @@ function BodyMaterials() {
         const now = head.materials[b.material]?.name ?? '';
         return (
           <label class="row" key={b.name}>
-            {b.name}
+            <span class="given">{b.name}</span>
             <select value={now} disabled={!mayDrive.value} data-testid={`material-of-${b.name}`} onChange={(e) => void post('/api/robot/set', { changes: [{ key: keyOf('body', b.name, 'material'), value: e.currentTarget.value }] })}>
               <optgroup label="In the file">
                 {head.materials.map((m) => (

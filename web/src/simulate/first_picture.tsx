@@ -7,7 +7,12 @@ import { onDrawn } from './the_view';
 
 // The element itself moves into the page: it shows the picture throughout, and a new one would begin empty.
 const picture = document.querySelector<HTMLElement>('.first-picture');
+const image = picture?.querySelector('img');
 const shown = signal(picture !== null);
+// Of a file with errors there is none: the browser would draw the frame of a missing image.
+const lose = () => (shown.value = false);
+if (image?.complete && image.naturalWidth === 0) lose();
+image?.addEventListener('error', lose);
 
 export function FirstPicture() {
   const place = useRef<HTMLDivElement>(null);

@@ -142,7 +142,7 @@ export function Ranges() {
         <div class="range" key={input.name}>
           <label class="tick">
             <input type="checkbox" checked={input.used} onChange={(e) => (inputs.value = change(inputs.value, k, { used: e.currentTarget.checked }))} data-testid={`goal-use-${input.name}`} />
-            {input.name}
+            <span class="given">{input.name}</span>
           </label>
           <span class="ends">
             {(['low', 'high'] as const).map((end) => (
