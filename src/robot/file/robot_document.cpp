@@ -317,7 +317,12 @@ Result<std::string> robot_text(std::string_view text, const fs::path& file, cons
                                const fs::path& folder) {
     Result<config::Document> document = whole_document(text, file, assignments);
     if (!document) return tl::unexpected(document.error());
-    lead_paths(document->root, fs::absolute(document->file).parent_path(), fs::absolute(folder));
+    std::error_code error;
+    const auto whole = [&](const fs::path& path) { return fs::absolute(path.empty() ? "." : path, error); };
+    const fs::path from = whole(document->file).parent_path();
+    const fs::path to = error ? fs::path() : whole(folder);
+    if (error) return input_error("{}: the working directory cannot be read: {}", file.string(), error.message());
+    lead_paths(document->root, from, to);
     return config::toml_text(document->root);
 }
 

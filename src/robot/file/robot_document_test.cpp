@@ -67,6 +67,12 @@ TEST_CASE("files stand on each other in a chain, and each changes what the next 
     REQUIRE(whole);
     REQUIRE(write_file(folder / "whole.toml", *whole));
     CHECK(load_robot(folder / "whole.toml")->program.iteration_limit == 50);
+    // Without a folder it is for the working directory.
+    const auto for_folder = [&](const fs::path& to) {
+        return robot_text("mesh = { file = \"c.toml\" }\n", folder / "c/r.toml", {}, to).value();
+    };
+    CHECK(for_folder("") == for_folder(fs::current_path()));
+    CHECK(for_folder("") != for_folder(folder.path()));
 }
 
 TEST_CASE("the goals of a robot at the end of a chain have the times of its own program") {

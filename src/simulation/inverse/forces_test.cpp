@@ -93,4 +93,9 @@ TEST_CASE("the bar is pressed on the table with the wanted force") {
     CHECK(found.reached);
     CHECK(found.goals[0].got[0].x == near(0.05, {.absolute = 1e-3}));
     CHECK(found.state.contacts[0].force_N.z == near(found.goals[0].got[0].x, {.relative = 1e-3}));
+    // Alone it says nothing about the cables, which are slack at rest: neither that they would have to push.
+    task.goals.pop_back();
+    const Waypoint apart = solve(model, task, {.starts = 0}).waypoints.at(0);
+    CHECK_FALSE(apart.reached);
+    for (const Limit& limit : apart.limits) CHECK(limit.kind != Limit::Kind::slack);
 }

@@ -378,7 +378,8 @@ Seeker::Help Seeker::help_of(const Search& search, std::size_t cable) {
     const Eigen::VectorXd shares = search.residuals.cwiseProduct(by_tension);
     const double least = cancels * shares.lpNorm<1>();
     if (shares.sum() < -least) return Help::pulls;
-    return shares.sum() < least ? Help::none : Help::pushes;
+    // None, too, where no goal depends on the tension, as before anything touches.
+    return shares.sum() > least ? Help::pushes : Help::none;
 }
 
 /// A slack cable may be too long to pull, even at the short end of its bounds.
