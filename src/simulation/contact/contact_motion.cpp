@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/core/boxes.hpp"
+#include "base/linalg/extents.hpp"
 #include "simulation/contact/ccd.hpp"
 #include "simulation/contact/contact_search.hpp"
 
@@ -18,21 +18,6 @@ namespace {
 constexpr double kept_share = 0.1;
 
 constexpr int few_looks = 8;
-
-double longest_move(std::span<const double> dx) {
-    double squared = 0;
-    for (std::size_t node = 0; 3 * node < dx.size(); ++node) {
-        const Vec3 move = node_at(dx, static_cast<int>(node));
-        squared = std::max(squared, dot(move, move));
-    }
-    return std::sqrt(squared);
-}
-
-double extent(std::span<const double> x) {
-    Box3 box;
-    for (std::size_t node = 0; 3 * node < x.size(); ++node) box.add(node_at(x, static_cast<int>(node)));
-    return box.diagonal();
-}
 
 /// A clearance that answers fewer calls than this has cost more than it saved.
 constexpr int worth_knowing = 4;
@@ -113,7 +98,7 @@ void Contact::note_clearance(std::span<const double> x) const {
 /// Of a motion that is longer than the robot all pairs would have to be followed for a long way, although it ends
 /// early: the search begins with a part of it that is blocked.
 double Contact::largest_step(std::span<const double> x, std::span<const double> dx) const {
-    if (!(longest_move(dx) > extent(x))) return free_step(x, dx, 0);
+    if (!(linalg::longest(dx) > linalg::diagonal(x))) return free_step(x, dx, 0);
     constexpr double shorter = 1.0 / 16, least = 1e-12;
     std::vector<double> part(dx.begin(), dx.end());
     double share = 1;

@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "base/core/boxes.hpp"
 #include "base/core/counted.hpp"
 #include "base/linalg/cholesky.hpp"
 #include "base/linalg/dense.hpp"
+#include "base/linalg/extents.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/contact_step.hpp"
@@ -369,8 +369,8 @@ private:
 
     private:
         [[nodiscard]] static double share_within_reach(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) {
-            const double reach_m = bounds_of(linalg::points_of(x)).diagonal();
-            const double longest_m = motion.reshaped(3, motion.size() / 3).colwise().norm().maxCoeff();
+            const double reach_m = linalg::diagonal(view(x));
+            const double longest_m = linalg::longest(view(motion));
             return longest_m > reach_m ? reach_m / longest_m : 1;
         }
 
