@@ -11,6 +11,7 @@
 
 #include "base/core/text.hpp"
 #include "base/linalg/dense.hpp"
+#include "simulation/identify/at_bounds.hpp"
 #include "simulation/identify/confidence.hpp"
 #include "simulation/identify/least_squares.hpp"
 #include "simulation/identify/trial.hpp"
@@ -191,41 +192,43 @@ private:
         return unknown.scale == Scale::from_zero ? value + unknown.rate(value) * by : unknown.value_at(u + by);
     }
 
-    /// For an unknown that may be 0, and is: how far up the data allow it. The linear problem without its bound has its
-    /// minimum below 0; what its interval keeps above 0 is the answer.
-    void find_above_zero(const LeastSquaresEnd& end, const std::vector<bool>& held, Identification& result) const {
-        std::vector<bool> released = held;
-        for (std::size_t k = 0; k < held.size(); ++k) released[k] = held[k] && !is_at_zero(result.found[k]);
-        if (released == held) return;
-        const Confidence known = confidence(end.jacobian, end.residuals, released, negligible, groups());
-        MatrixXd J = end.jacobian;
-        for (std::size_t k = 0; k < released.size(); ++k)
-            if (released[k]) J.col(static_cast<Index>(k)).setZero();
-        const VectorXd step = linalg::pseudo_inverse(J) * -end.residuals;
+    /// From its lower bound to its upper one, in u as moved() takes it.
+    [[nodiscard]] static double room(const Unknown& unknown) {
+        if (unknown.scale == Scale::from_zero) return (unknown.high - unknown.low) / unknown.rate(unknown.low);
+        return unknown.coordinate(unknown.high) - unknown.coordinate(unknown.low);
+    }
+
+    [[nodiscard]] std::vector<End> ends(const VectorXd& u, const std::vector<bool>& held) const {
+        std::vector<End> all;
         for (std::size_t k = 0; k < held.size(); ++k) {
-            const auto j = static_cast<Index>(k);
-            if (released[k] == held[k] || !std::isfinite(known.half_width[j])) continue;
-            const double high = moved(unknowns_[k], end.u[j], step[j] + known.half_width[j]);
-            if (!(high > 0)) continue;
-            result.found[k].low = 0;
-            result.found[k].high = std::min(high, unknowns_[k].high);
+            const double value = value_of(unknowns_[k], u[static_cast<Index>(k)], held[k]);
+            all.push_back(held[k] ? End{value == unknowns_[k].low ? 1 : -1, room(unknowns_[k])} : End{});
         }
+        return all;
     }
 
-    [[nodiscard]] static bool is_at_zero(const Found& found) {
-        return found.at_bound && found.unknown.scale == Scale::from_zero && found.value == 0;
+    /// Sets the interval from `below` under u to `above` over it. No formula knows the bounds, between which the value
+    /// is known to be.
+    static void set_interval(Found& found, double u, double below, double above) {
+        if (!std::isfinite(below) || !std::isfinite(above)) return;
+        const auto& [lowest, highest] = std::pair(found.unknown.low, found.unknown.high);
+        found.low = std::clamp(moved(found.unknown, u, -below), lowest, highest);
+        found.high = std::clamp(moved(found.unknown, u, above), lowest, highest);
     }
 
-    void find(const LeastSquaresEnd& end, const Confidence& known, const std::vector<bool>& held,
+    void find(const LeastSquaresEnd& end, const Confidence& known, const std::vector<End>& ends, const AtBounds& open,
               Identification& result) const {
         for (std::size_t k = 0; k < unknowns_.size(); ++k) {
             const auto j = static_cast<Index>(k);
-            Found found{unknowns_[k], value_of(unknowns_[k], end.u[j], held[k]), {}, {}, held[k], known.matters[k]};
-            if (std::isfinite(known.half_width[j])) {
-                // The formula knows no bounds, between which the value is known to be.
-                const auto& [lowest, highest] = std::pair(unknowns_[k].low, unknowns_[k].high);
-                found.low = std::clamp(moved(unknowns_[k], end.u[j], -known.half_width[j]), lowest, highest);
-                found.high = std::clamp(moved(unknowns_[k], end.u[j], known.half_width[j]), lowest, highest);
+            const int inward = ends[k].inward;
+            const double u = end.u[j], reach = open.reach[j];
+            Found found{unknowns_[k], value_of(unknowns_[k], u, inward != 0), {}, {}, inward != 0, known.matters[k]};
+            if (inward == 0) {
+                set_interval(found, u, known.half_width[j] + open.below[j], known.half_width[j] + open.above[j]);
+            } else if (reach > 0) {
+                set_interval(found, u, inward < 0 ? reach : 0, inward > 0 ? reach : 0);
+                // At a bound exactly the bound, without the rounding of its scale.
+                (inward > 0 ? found.low : found.high) = found.value;
             }
             result.found.push_back(std::move(found));
         }
@@ -270,16 +273,22 @@ private:
             refused_);
     }
 
-    void warn(const Confidence& known, Identification& result) const {
+    /// With an interval: within it the bound explains the data as well as a value beyond it.
+    [[nodiscard]] static std::string at_bound_warning(const Found& found) {
+        const bool from_below = *found.low == found.value;
+        return fmt::format(
+            "{}: is at its bound, {}; the data ask for a value beyond it, and within their noise allow {} {}",
+            found.unknown.key, found.unknown.shown(found.value), from_below ? "up to" : "down to",
+            found.unknown.shown(from_below ? *found.high : *found.low));
+    }
+
+    void warn(const Confidence& known, const AtBounds& open, Identification& result) const {
         for (const Found& found : result.found) {
             if (!found.matters)
                 result.warnings.push_back(fmt::format(
                     "{}: nothing that was measured depends on it; its value means nothing", found.unknown.key));
-            else if (found.at_bound && found.high)
-                result.warnings.push_back(
-                    fmt::format("{}: is at its bound, {}; the data ask for a value beyond it, and within their noise "
-                                "allow up to {}",
-                                found.unknown.key, found.unknown.shown(found.value), found.unknown.shown(*found.high)));
+            else if (found.at_bound && found.low)
+                result.warnings.push_back(at_bound_warning(found));
             else if (found.at_bound)
                 result.warnings.push_back(fmt::format("{}: is at its bound, {}; the data ask for a value beyond it",
                                                       found.unknown.key, found.unknown.shown(found.value)));
@@ -287,7 +296,9 @@ private:
                 result.warnings.push_back(fmt::format(
                     "{}: these data hardly determine it: its interval reaches from bound to bound", found.unknown.key));
         }
-        for (const auto& group : known.mixed) {
+        std::vector<std::vector<std::size_t>> mixed = known.mixed;
+        mixed.insert(mixed.end(), open.mixed.begin(), open.mixed.end());
+        for (const auto& group : mixed) {
             std::vector<std::string> names;
             for (const std::size_t k : group) names.push_back(unknowns_[k].key);
             result.warnings.push_back(fmt::format(
@@ -314,8 +325,9 @@ private:
         result.converged = end.converged;
         result.correlation = known.correlation;
         result.channels = m_.channels;
-        find(end, known, held, result);
-        find_above_zero(end, held, result);
+        const std::vector<End> where = ends(end.u, held);
+        const AtBounds open = at_bounds(end.jacobian, end.residuals, where, negligible, groups());
+        find(end, known, where, open, result);
         for (const MeasuredValue& value : m_.values) {
             const auto channel = static_cast<Index>(value.channel);
             const Index row = row_of(value.time);
@@ -323,7 +335,7 @@ private:
         }
         result.fitted = errors(result.values, false);
         result.judged = errors(result.values, true);
-        warn(known, result);
+        warn(known, open, result);
         warn_of_refusal(end, held, result);
         if (!m_.not_compared.empty())
             result.warnings.push_back(fmt::format(

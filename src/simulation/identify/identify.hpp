@@ -17,7 +17,7 @@ namespace pliant::sim::identify {
 struct Found {
     Unknown unknown;  ///< `value`: initial value of the search
     double value = 0;
-    /// 95 % confidence interval; empty if the data do not determine one, or at a bound other than 0.
+    /// 95 % confidence interval; empty if the data do not determine one. At a bound it is what they allow from there.
     std::optional<double> low, high;
     bool at_bound = false;
     bool matters = true;  ///< false: none of the measurements depends on it

@@ -18,7 +18,7 @@ std::string unit_or_ratio(const std::string& unit) {
 
 std::string interval(const Found& found) {
     if (!found.matters) return "(does not matter)";
-    if (found.at_bound && found.high)
+    if (found.at_bound && found.low)
         return fmt::format("95 %: {} to {} (at its bound)", found.unknown.shown(*found.low),
                            found.unknown.shown(*found.high));
     if (found.at_bound) return "(at its bound)";

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/core/near.hpp"
+#include "simulation/identify/at_bounds.hpp"
 #include "simulation/identify/confidence.hpp"
 
 using namespace pliant;
@@ -104,6 +105,41 @@ TEST_CASE("the intervals of a straight-line fit agree with the formula") {
     const Confidence held = confidence(J, r, {true, false}, 1e-9);
     CHECK(held.half_width[1] == near(4.30265 * std::sqrt(0.03 / 2 / 14), {.relative = 2e-3}));
     CHECK(std::isnan(held.half_width[0]));
+}
+
+TEST_CASE("what a bound hides from one unknown is open to the other") {
+    // y = a + b x at x = 0, 1, 2, 3, where the data ask for a = -0.1, b = 0, and a ends at its lower bound, 0.
+    MatrixXd J(4, 2);
+    J << 1, 0, 1, 1, 1, 2, 1, 3;
+    VectorXd noise(4);
+    noise << 0.1, -0.1, -0.1, 0.1;
+    // With a at 0 the best b is -0.1 * sum x / sum x^2.
+    const double b = -0.1 * 6 / 14;
+    const VectorXd r = J * Eigen::Vector2d(0.1, b) + noise;
+    CHECK(J.col(1).dot(r) == near(0, {.absolute = 1e-15}));
+    const double width = 4.30265 * std::sqrt(0.02 * (0.25 + 2.25 / 5));
+    const AtBounds open = at_bounds(J, r, {{1, 10}, {}}, 1e-9);
+    CHECK(open.reach[0] == near(width - 0.1, {.relative = 1e-5}));
+    CHECK(open.reach[1] == 0);
+    // A larger a lets b fall by sum x / sum x^2 of it.
+    CHECK(open.below[1] == near((width - 0.1) * 6 / 14, {.relative = 1e-5}));
+    CHECK(open.above[1] == 0);
+    CHECK(open.mixed.empty());
+    // Not beyond the other bound; and not at all where the data exclude the range, or nothing is at a bound.
+    CHECK(at_bounds(J, r, {{1, 0.05}, {}}, 1e-9).reach[0] == near(0.05, {.relative = 1e-15}));
+    const VectorXd far = J * Eigen::Vector2d(10, -10.0 * 6 / 14) + noise;
+    CHECK(at_bounds(J, far, {{1, 10}, {}}, 1e-9).reach[0] == 0);
+    CHECK(at_bounds(J, far, {{1, 10}, {}}, 1e-9).below[1] == 0);
+    CHECK(at_bounds(J, r, {{}, {}}, 1e-9).below.isZero(0));
+
+    // Two columns that nothing tells apart: all of the room is open to the other, and both are named.
+    MatrixXd same(4, 2);
+    same << 1, 1, 1, 1, 1, 1, 1, 1;
+    const AtBounds mixed = at_bounds(same, noise, {{-1, 3}, {}}, 1e-9);
+    CHECK(std::isnan(mixed.reach[0]));
+    CHECK(mixed.above[1] == near(3, {.relative = 1e-12}));
+    REQUIRE(mixed.mixed.size() == 1);
+    CHECK(mixed.mixed[0] == std::vector<std::size_t>{0, 1});
 }
 
 TEST_CASE("residuals of two groups have a noise of their own") {

@@ -145,10 +145,10 @@ function Found() {
                 <td colSpan={3} class="quiet">
                   {!one.matters
                     ? 'no measured quantity depends on it'
-                    : one.at_bound
-                      ? 'at its bound'
-                      : found.shown[k].low
-                        ? `95 % confidence: ${found.shown[k].low} to ${found.shown[k].high}`
+                    : found.shown[k].low
+                      ? `95 % confidence: ${found.shown[k].low} to ${found.shown[k].high}${one.at_bound ? ', at its bound' : ''}`
+                      : one.at_bound
+                        ? 'at its bound'
                         : 'no confidence interval from these data'}
                 </td>
               </tr>
