@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -31,7 +32,7 @@ struct InverseArguments {
 };
 
 struct FoundProgram {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings{};  ///< of the folder, if it was written
     bool written = false, all_drawn = true;
 };
 
@@ -43,7 +44,7 @@ void print_found(const InverseArguments& options, const Model& model, const Inve
 
 /// While files are written, the first signal, or an earlier one, skips the pictures; only the second cancels.
 FoundProgram write_found(const InverseArguments& options, const InverseResult& result, Progress& progress) {
-    FoundProgram found{result.notes()};
+    FoundProgram found;
     found.written = !options.folder.empty() && result.waypoint_count() > 0;
     if (!found.written) return found;
     on_signal(OnSignal::ask_twice);
@@ -55,8 +56,7 @@ FoundProgram write_found(const InverseArguments& options, const InverseResult& r
         found.all_drawn = !interrupted();
         return !found.all_drawn;
     };
-    for (std::string& warning : result.write(options.folder, watch, enough_pictures))
-        found.warnings.push_back(std::move(warning));
+    found.warnings = result.write(options.folder, watch, enough_pictures);
     return found;
 }
 
@@ -64,10 +64,12 @@ FoundProgram write_found(const InverseArguments& options, const InverseResult& r
 int tell_found(const InverseArguments& options, const Model& model, const InverseResult& result,
                const FoundProgram& found) {
     if (options.output.json)
-        fmt::print("{}", result.json());
+        fmt::print("{}", result.json(found.warnings));
     else if (!options.output.quiet)
         print_found(options, model, result, found.written);
-    for (const std::string& warning : found.warnings) fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
+    const auto warn = [&](const std::string& text) { fmt::print(stderr, "{}: warning: {}\n", options.robot, text); };
+    std::ranges::for_each(result.notes(), warn);
+    std::ranges::for_each(found.warnings, warn);
     if (!result.message().empty())
         fmt::print(stderr, "{}: {}\n", options.robot, result.message());
     else if (!found.all_drawn)

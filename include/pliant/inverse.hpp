@@ -83,8 +83,8 @@ public:
     [[nodiscard]] Inputs inputs_at(std::size_t index) const;
     /// Text for people: one line per waypoint, and the active limits of those that were not reached.
     [[nodiscard]] std::string text() const;
-    /// All figures, as in inverse.json.
-    [[nodiscard]] std::string json() const;
+    /// All figures, as in inverse.json, whose notes hold `warnings` of write() too.
+    [[nodiscard]] std::string json(const std::vector<std::string>& warnings = {}) const;
 
     /// Writes the folder that `pliant inverse -o` writes, whole or not at all, replacing an older one: program.toml,
     /// which leads through the waypoints, the results of that program, inverse.json and waypoints.csv; also robot.toml

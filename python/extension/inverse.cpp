@@ -60,7 +60,7 @@ void add_inverse_result(py::module_& module) {
         .def("waypoint", [](const InverseResult& result, std::size_t k) { return waypoint_tuple(result.waypoint(k)); })
         .def("inputs_at", [](const InverseResult& result, std::size_t k) { return tuple_of(result.inputs_at(k)); })
         .def("text", &InverseResult::text)
-        .def("json", &InverseResult::json)
+        .def("json", [](const InverseResult& result) { return result.json(); })
         .def("write", [](const InverseResult& result, const std::filesystem::path& folder, py::object progress) {
             return watched(std::move(progress), [&](const Watch& watch) { return result.write(folder, watch); });
         });

@@ -124,8 +124,8 @@ std::string InverseResult::text() const {
     return lines;
 }
 
-std::string InverseResult::json() const {
-    return report::inverse_json(data_->report());
+std::string InverseResult::json(const std::vector<std::string>& warnings) const {
+    return report::inverse_json(data_->report(), warnings);
 }
 
 }  // namespace pliant

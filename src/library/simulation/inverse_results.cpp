@@ -158,10 +158,10 @@ std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& 
     const auto written = library::value_of(report::write_results(folder, simulation, {}, progress, drawing));
     drawing.rethrow();
     if (progress.cancelled()) library::check(cancelled());
-    library::check(write_file(folder / "inverse.json", report::inverse_json(found.report())));
-    library::check(write_file(folder / "waypoints.csv", report::waypoints_csv(found.report())));
     std::vector<std::string> warnings = departures(found, run, goals);
     if (!written.warning.empty()) warnings.push_back(written.warning);
+    library::check(write_file(folder / "inverse.json", report::inverse_json(found.report(), warnings)));
+    library::check(write_file(folder / "waypoints.csv", report::waypoints_csv(found.report())));
     return warnings;
 }
 

@@ -175,11 +175,13 @@ InputUnit unit_of(const sim::Model& model, const sim::Steered& input) {
     }
 }
 
-std::string inverse_json(const InverseReport& r, int indent) {
+std::string inverse_json(const InverseReport& r, const std::vector<std::string>& warnings, int indent) {
+    std::vector<std::string> notes = r.result.notes;
+    notes.insert(notes.end(), warnings.begin(), warnings.end());
     Json out = {{"pliant", PLIANT_VERSION},      {"robot", r.robot},
                 {"nodes", r.model.node_count()}, {"tets", r.model.mesh().tet_count()},
                 {"order", r.model.mesh().order}, {"reached", r.result.reached},
-                {"message", r.result.message},   {"notes", r.result.notes}};
+                {"message", r.result.message},   {"notes", notes}};
     out["waypoints"] = Json::array();
     for (std::size_t k = 0; k < r.result.waypoints.size(); ++k) out["waypoints"].push_back(waypoint_json(r, k));
     return json_text(out, indent) + "\n";

@@ -24,8 +24,9 @@ struct InputUnit {
 };
 [[nodiscard]] InputUnit unit_of(const sim::Model& model, const sim::Steered& input);
 
-/// docs/reference/results.md describes the keys.
-[[nodiscard]] std::string inverse_json(const InverseReport& report, int indent = 2);
+/// docs/reference/results.md describes the keys. `warnings` of the program that was written are further notes.
+[[nodiscard]] std::string inverse_json(const InverseReport& report, const std::vector<std::string>& warnings = {},
+                                       int indent = 2);
 /// One row per waypoint: index, time, reached; for each goal wanted, got and error; inputs; tensions and pressures of
 /// all actuators.
 [[nodiscard]] std::string waypoints_csv(const InverseReport& report);

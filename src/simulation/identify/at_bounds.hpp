@@ -6,7 +6,7 @@
 
 namespace pliant::sim::identify {
 
-/// Where an unknown ended, in u.
+/// Where an unknown ended, in its coordinate.
 struct End {
     int inward = 0;   ///< 0: within its bounds; 1: at its lower bound, -1: at its upper one
     double room = 0;  ///< distance to the other bound, which may be infinite

@@ -192,17 +192,28 @@ private:
         return unknown.scale == Scale::from_zero ? value + unknown.rate(value) * by : unknown.value_at(u + by);
     }
 
-    /// From its lower bound to its upper one, in u as moved() takes it.
-    [[nodiscard]] static double room(const Unknown& unknown) {
-        if (unknown.scale == Scale::from_zero) return (unknown.high - unknown.low) / unknown.rate(unknown.low);
-        return unknown.coordinate(unknown.high) - unknown.coordinate(unknown.low);
+    /// Far from its start a coordinate bends within an interval from a bound: there the value itself is the coordinate,
+    /// in units of what a change of 1 in u is at the start.
+    [[nodiscard]] static double unit_at_bound(const Unknown& unknown) { return unknown.rate(unknown.value); }
+
+    /// The derivatives with respect to the coordinates of bounds for those that are held.
+    [[nodiscard]] MatrixXd at_bounds_jacobian(const LeastSquaresEnd& end, const std::vector<bool>& held) const {
+        MatrixXd J = end.jacobian;
+        for (std::size_t k = 0; k < held.size(); ++k) {
+            const auto j = static_cast<Index>(k);
+            const Unknown& unknown = unknowns_[k];
+            if (held[k]) J.col(j) *= unit_at_bound(unknown) / unknown.rate(value_of(unknown, end.u[j], true));
+        }
+        return J;
     }
 
     [[nodiscard]] std::vector<End> ends(const VectorXd& u, const std::vector<bool>& held) const {
         std::vector<End> all;
         for (std::size_t k = 0; k < held.size(); ++k) {
-            const double value = value_of(unknowns_[k], u[static_cast<Index>(k)], held[k]);
-            all.push_back(held[k] ? End{value == unknowns_[k].low ? 1 : -1, room(unknowns_[k])} : End{});
+            const Unknown& unknown = unknowns_[k];
+            const bool is_low = value_of(unknown, u[static_cast<Index>(k)], held[k]) == unknown.low;
+            const double room = (unknown.high - unknown.low) / unit_at_bound(unknown);
+            all.push_back(held[k] ? End{is_low ? 1 : -1, room} : End{});
         }
         return all;
     }
@@ -226,9 +237,9 @@ private:
             if (inward == 0) {
                 set_interval(found, u, known.half_width[j] + open.below[j], known.half_width[j] + open.above[j]);
             } else if (reach > 0) {
-                set_interval(found, u, inward < 0 ? reach : 0, inward > 0 ? reach : 0);
-                // At a bound exactly the bound, without the rounding of its scale.
-                (inward > 0 ? found.low : found.high) = found.value;
+                const double other = found.unknown.clamped(found.value + inward * reach * unit_at_bound(found.unknown));
+                found.low = std::min(found.value, other);
+                found.high = std::max(found.value, other);
             }
             result.found.push_back(std::move(found));
         }
@@ -319,14 +330,15 @@ private:
         std::vector<bool> held;
         for (Index j = 0; j < end.u.size(); ++j)
             held.push_back((end.u[j] <= low[j] && gradient[j] > 0) || (end.u[j] >= high[j] && gradient[j] < 0));
-        const Confidence known = confidence(end.jacobian, end.residuals, held, negligible, groups());
+        const MatrixXd J = at_bounds_jacobian(end, held);
+        const Confidence known = confidence(J, end.residuals, held, negligible, groups());
         Identification result;
         result.trials = end.trials;
         result.converged = end.converged;
         result.correlation = known.correlation;
         result.channels = m_.channels;
         const std::vector<End> where = ends(end.u, held);
-        const AtBounds open = at_bounds(end.jacobian, end.residuals, where, negligible, groups());
+        const AtBounds open = at_bounds(J, end.residuals, where, negligible, groups());
         find(end, known, where, open, result);
         for (const MeasuredValue& value : m_.values) {
             const auto channel = static_cast<Index>(value.channel);
