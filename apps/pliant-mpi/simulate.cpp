@@ -57,13 +57,14 @@ fs::path kept_folder(const Options& options) {
     return beside_folder(options.folder, ".checkpoint");
 }
 
-/// `base`: text of the robot that the file stands on.
-std::string digest_of(const Options& options, const std::string& text, const std::optional<std::string>& base,
-                      const mesh::TetMesh& mesh) {
+/// `text`: of the robot file; `base`: of the robot that it stands on; `files`: digest of the files that they name.
+std::string digest_of(const std::string& text, const std::optional<std::string>& base, const std::string& files,
+                      const std::vector<std::string>& assignments, const mesh::TetMesh& mesh) {
     Digest digest;
     digest.add(text.data(), text.size());
     if (base) digest.add(base->data(), base->size());
-    for (const std::string& change : options.assignments) digest.add(change.data(), change.size());
+    digest.add(files.data(), files.size());
+    for (const std::string& change : assignments) digest.add(change.data(), change.size());
     digest.add(mesh.points.data(), mesh.points.size() * sizeof(Vec3));
     digest.add(mesh.nodes.data(), mesh.nodes.size() * sizeof(int));
     return digest.text();
@@ -79,11 +80,13 @@ Result<sim::Description> read(const Options& options, Job& job, RobotData& data)
     if (!text) return tl::unexpected(text.error());
     const Result<std::optional<std::string>> base = robot::base_text(*text, options.robot);
     if (!base) return tl::unexpected(base.error());
+    const Result<std::string> files = robot::digest_of_named_files(*text, options.robot, assignments);
+    if (!files) return tl::unexpected(files.error());
     Stopwatch watch;
     Progress silent;
     Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, silent);
     if (!mesh) return tl::unexpected(mesh.error());
-    job = {robot->program, digest_of(options, *text, *base, *mesh)};
+    job = {robot->program, digest_of(*text, *base, *files, assignments, *mesh)};
     data.name = robot->name;
     data.notes = mesh->notes;
     Result<sim::Description> description = robot::build_description(*robot, std::move(*mesh));

@@ -14,7 +14,9 @@ namespace pliant {
 Robot::Robot(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
 std::string Robot::Data::origin() const {
-    return fmt::format("{}\n{}{}", fmt::join(changes, "\n"), text, base ? "\nstands on\n" + *base : "");
+    const std::string files = library::value_of(robot::digest_of_named_files(text, file, changes));
+    return fmt::format("{}\n{}{}{}", fmt::join(changes, "\n"), text, base ? "\nstands on\n" + *base : "",
+                       files.empty() ? "" : "\nwith files " + files);
 }
 
 Result<robot::Robot> library::read_again(const Robot::Data& robot, const std::vector<std::string>& more) {

@@ -50,9 +50,7 @@ std::vector<std::string> read_marker_names(Reader& reader, const Context& contex
 
 /// The name of a column, without a unit in brackets.
 std::string bare_name(std::string_view column) {
-    column = column.substr(0, column.find_first_of("(["));
-    while (!column.empty() && column.back() == ' ') column.remove_suffix(1);
-    return std::string(column);
+    return std::string(trimmed(without_csv_unit(column)));
 }
 
 /// What the columns of a path may be called: those of this goal, and those of other markers, which one table may hold.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/core/config_text.hpp"
+#include "base/core/digest.hpp"
 #include "base/core/files.hpp"
 #include "base/core/letters.hpp"
 #include "base/core/text.hpp"
@@ -311,6 +312,23 @@ Result<std::vector<std::pair<std::string, double>>> free_parameters(std::string_
         }
     }
     return found;
+}
+
+Result<std::string> digest_of_named_files(std::string_view text, const fs::path& file,
+                                          const std::vector<std::string>& assignments) {
+    const Result<config::Document> document = whole_document(text, file, assignments);
+    if (!document) return tl::unexpected(document.error());
+    std::vector<fs::path> files;
+    add_paths(document->root, document->file.parent_path(), files);
+    Digest digest;
+    for (const fs::path& named : files) {
+        const Result<std::string> content = read_file(named);
+        if (!content) return tl::unexpected(content.error());
+        const std::size_t size = content->size();
+        digest.add(&size, sizeof size);
+        digest.add(content->data(), size);
+    }
+    return files.empty() ? "" : digest.text();
 }
 
 Result<std::string> robot_text(std::string_view text, const fs::path& file, const std::vector<std::string>& assignments,

@@ -36,6 +36,12 @@ struct BasedDocument {
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const std::filesystem::path& file,
                                                           const std::vector<std::string>& assignments);
 
+/// `text` is that of `file`. One digest of all meshes, surfaces and tables that it, what it stands on, and the
+/// assignments name; "" if they name none. Errors: of the text and what it stands on, of an assignment; a file that
+/// cannot be read.
+[[nodiscard]] Result<std::string> digest_of_named_files(std::string_view text, const std::filesystem::path& file,
+                                                        const std::vector<std::string>& assignments);
+
 /// Applies each "KEY=VALUE". Errors: those of config::set(); a material, parameter or shape that the document does not
 /// have and nothing in it uses.
 [[nodiscard]] Status set_all(config::Document& document, const std::vector<std::string>& assignments);

@@ -75,6 +75,26 @@ TEST_CASE("files stand on each other in a chain, and each changes what the next 
     CHECK(for_folder("") != for_folder(folder.path()));
 }
 
+TEST_CASE("the files that a robot names have one digest, which changes with any of them") {
+    const test::Folder folder("digest");
+    const std::string text =
+        "obstacle = [{ name = \"wall\", surface = \"wall.stl\" }]\nprogram.file = \"missing.csv\"\n";
+    const auto digest = [&](const std::string& of, const std::vector<std::string>& changes = {}) {
+        return digest_of_named_files(of, folder / "r.toml", changes).value();
+    };
+    CHECK(digest("name = \"bar\"\n").empty());
+    REQUIRE(write_file(folder / "wall.stl", "solid one"));
+    REQUIRE(write_file(folder / "other.stl", "solid two"));
+    const std::string one = digest(text);
+    CHECK_FALSE(one.empty());
+    CHECK(digest(text) == one);
+    CHECK(digest(text, {"obstacle.wall.surface=other.stl"}) != one);
+    REQUIRE(write_file(folder / "base.toml", text));
+    CHECK(digest("robot = \"base.toml\"\n") == one);
+    REQUIRE(write_file(folder / "wall.stl", "solid two"));
+    CHECK(digest(text) != one);
+}
+
 TEST_CASE("the goals of a robot at the end of a chain have the times of its own program") {
     const test::Folder folder("chain");
     write_chain(folder);

@@ -104,7 +104,7 @@ Status take(const Json& json, const std::string& steps, const std::string& origi
         return input_error("a checkpoint of another version; this Pliant reads version {}", version);
     if (json.value("origin", Json()) != origin)
         return input_error(
-            "the checkpoint belongs to another robot file, mesh or --set; run without --resume to start anew");
+            "the checkpoint belongs to another robot file, mesh, --set or --steps; run without --resume to start anew");
     for (const char* key : {"step", "setup_s", "solve_s"})
         if (!json.value(key, Json()).is_number()) return input_error("its {} is damaged", key);
     run.step = json["step"].get<int>();

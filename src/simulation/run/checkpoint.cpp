@@ -190,7 +190,9 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
     if (in.status() && own_version != version)
         return wrong(fmt::format("a checkpoint of version {}; this Pliant reads version {}", own_version, version));
     if (in.text("origin") != origin && in.status())
-        return wrong("a checkpoint of another robot file, or the file, its changes or its solver have changed since");
+        return wrong(
+            "a checkpoint of another robot file, or the file, a file that it names, its changes or its solver have "
+            "changed since");
     RunState run;
     run.step = in.integer("step", 0, program.steps);
     const int every = in.integer("every", 1, std::numeric_limits<int>::max());

@@ -46,16 +46,58 @@ double size_of(const mesh::TetMesh& mesh) {
     return bounds_of(mesh.points).diagonal();
 }
 
+/// Nodes that something in the file selects, and what to say if the number changes them.
+struct Selection {
+    std::string blame;
+    std::vector<int> nodes;
+};
+
+/// Of all faces, one after the other, so that other faces of the same nodes are noticed too.
+std::vector<int> nodes_of(const sim::Wall& wall) {
+    std::vector<int> nodes;
+    for (const sim::WallFace& face : wall.faces) {
+        for (const int point : face) {
+            if (point < 0) continue;
+            const auto& attached = wall.points[static_cast<std::size_t>(point)].nodes;
+            nodes.insert(nodes.end(), attached.begin(), attached.end());
+        }
+    }
+    return nodes;
+}
+
+std::vector<Selection> selections(const sim::Description& d) {
+    std::vector<Selection> all;
+    const auto add = [&](fmt::format_string<const std::string&> blame, const std::string& name,
+                         std::vector<int> nodes) {
+        all.push_back({fmt::format(blame, name), std::move(nodes)});
+    };
+    for (const sim::Support& support : d.supports)
+        add("it decides which nodes \"{}\" holds; let the box of the support follow it", support.name, support.nodes);
+    for (const sim::Load& load : d.loads)
+        add("it decides where load \"{}\" acts; let the box of the load follow it", load.name, load.nodes);
+    for (const sim::PressureLoad& load : d.pressures)
+        add("it decides where load \"{}\" acts; let the box of the load follow it", load.name, nodes_of(load.wall));
+    for (const sim::Chamber& chamber : d.chambers)
+        add("it decides which faces chamber \"{}\" has", chamber.name, nodes_of(chamber.wall));
+    for (const sim::RigidPlate& plate : d.plates)
+        add("it decides which nodes plate \"{}\" holds; let the box of the plate follow it", plate.name, plate.nodes);
+    for (const sim::Sensor& sensor : d.sensors) {
+        if (const auto* patch = std::get_if<sim::ContactSensor>(&sensor.what))
+            add("it decides which nodes sensor \"{}\" has; let the box of the sensor follow it", sensor.name,
+                patch->nodes);
+    }
+    return all;
+}
+
 /// Checks that what must not differ is equal.
 Status check_alike(const sim::Model& more, const sim::Model& less) {
     const sim::Description &a = more.description(), &b = less.description();
-    for (std::size_t s = 0; s < a.supports.size() && s < b.supports.size(); ++s) {
-        if (a.supports[s].nodes != b.supports[s].nodes)
-            return input_error("it decides which nodes \"{}\" holds; let the box of the support follow it",
-                               a.supports[s].name);
+    const std::vector<Selection> of_more = selections(a), of_less = selections(b);
+    for (std::size_t s = 0; s < of_more.size() && s < of_less.size(); ++s) {
+        if (of_more[s].nodes != of_less[s].nodes) return input_error("{}", of_more[s].blame);
     }
     const auto is_held = [](int free) { return free < 0; };
-    const bool alike = a.supports.size() == b.supports.size() &&
+    const bool alike = of_more.size() == of_less.size() && a.supports.size() == b.supports.size() &&
                        std::ranges::equal(more.free_index(), less.free_index(), {}, is_held, is_held) &&
                        a.cables.size() == b.cables.size() && a.chambers.size() == b.chambers.size() &&
                        a.markers.size() == b.markers.size();

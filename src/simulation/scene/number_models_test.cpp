@@ -212,7 +212,7 @@ TEST_CASE("eyelets on faces of tets stay attached to the same nodes while a numb
     }
 }
 
-TEST_CASE("a number has no derivative if it changes which nodes are held, nor over friction or dynamics") {
+TEST_CASE("a number has no derivative if it changes which nodes are held or loaded, nor over friction or dynamics") {
     const std::string fixed = "box = [[0, 0, 0], [0, 10, \"= height\"]]";
     Case c(1);
     c.text.replace(c.text.find(fixed), fixed.size(), "box = [[0, 0, 0], [0, 10, 12]]");
@@ -220,6 +220,20 @@ TEST_CASE("a number has no derivative if it changes which nodes are held, nor ov
     const auto lost = c.around("height", 12);
     REQUIRE_FALSE(lost);
     CHECK(holds(lost.error().message, "parameter height has no derivative: it decides which nodes \"clamp\" holds"));
+    // Boxes that do not follow the root's end, at x = 12, lose the nodes there.
+    const std::string top = "box = [[0, 0, 12], [12, 10, 12]]";
+    for (const auto& [added, blame] :
+         {std::pair("[[load]]\nname = \"lid\"\npressure = \"1 kPa\"\n" + top, "load \"lid\" acts"),
+          std::pair("[[load]]\nname = \"lid\"\nforce = [\"0 N\", \"0 N\", \"1 N\"]\n" + top, "load \"lid\" acts"),
+          std::pair("[[plate]]\nname = \"lid\"\n" + top, "plate \"lid\" holds")}) {
+        CAPTURE(added);
+        Case loaded(1);
+        loaded.text += added + "\n";
+        loaded.robot = *loaded.read({});
+        const auto lost_load = loaded.around("place", 20);
+        REQUIRE_FALSE(lost_load);
+        CHECK(holds(lost_load.error().message, blame));
+    }
     const Case good(1);
     const auto around = good.around("ratio", 0.96);
     REQUIRE(around);
