@@ -9,6 +9,7 @@
 #include "base/core/counted.hpp"
 #include "base/core/csv.hpp"
 #include "base/core/files.hpp"
+#include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 
 namespace pliant::robot {

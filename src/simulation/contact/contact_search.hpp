@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -62,7 +63,65 @@ std::vector<char> moving_ones(const std::vector<Nodes>& features, std::span<cons
 /// Features of one kind of one side.
 struct Group {
     const BoxTree* tree;
-    BoxTree::MovingFit fit;  ///< without an end where nothing moves
+    std::shared_ptr<const BoxTree::MovingFit> fit;  ///< without an end in a search without a motion
+};
+
+enum class Shape { points, edges, triangles };
+
+/// Boxes of obstacles that have not moved since they were fitted, by what they were fitted for: most obstacles never
+/// move, and round ones have many more features than the robot.
+class StillBoxes {
+public:
+    struct Use {
+        Shape shape;
+        double margin;
+        bool in_motion;  ///< with an end
+        auto operator<=>(const Use&) const = default;
+    };
+    using Fit = std::shared_ptr<const BoxTree::MovingFit>;
+
+    /// The fit for this use with the points at `at`; null if it is not known.
+    [[nodiscard]] Fit find(const Use& use, const std::vector<Vec3>& at) const {
+        const std::lock_guard lock(mutex_);
+        const auto known = fits_.find(use);
+        return known == fits_.end() || at_ != at ? nullptr : known->second;
+    }
+    void keep(const Use& use, const std::vector<Vec3>& at, Fit fit) {
+        const std::lock_guard lock(mutex_);
+        if (at_ != at || fits_.size() >= most) fits_.clear();
+        at_ = at;
+        fits_[use] = std::move(fit);
+    }
+
+private:
+    static constexpr std::size_t most = 24;
+    mutable std::mutex mutex_;  // not that of Memory, which is held while a Nearby searches
+    std::vector<Vec3> at_;
+    std::map<Use, Fit> fits_;
+};
+
+struct Contact::Memory {
+    std::mutex mutex;
+    std::vector<double> x;  ///< at the last call
+    std::shared_ptr<const Nearby> nearby;
+    int settled = 0;  ///< number of consecutive calls near the previous one
+    struct {
+        std::vector<double> x;
+        Pairs pairs;
+    } found;  ///< result of the last find: a solver asks several times for the same state
+    StillBoxes still;
+    std::map<std::pair<std::int64_t, int>, double> from_face_m;  ///< Contact::rest_distance(), by face and point
+
+    /// The clearance at a state where nothing was near, and how useful it was.
+    struct {
+        std::shared_ptr<const Clearance> known;
+        std::vector<double> end;  ///< a state known to be clear: the end of a step
+        int served = 0;           ///< number of calls that it has answered
+        int wait = 0;             ///< number of searches before the next attempt
+        int patience = 1;
+
+        void grow_patience() { wait = patience = std::min(2 * patience, 64); }
+    } clear;
 };
 
 class Contact::Search {
@@ -153,23 +212,55 @@ private:
         std::size_t first_leaf;  ///< leaves of all families are numbered through
     };
 
-    enum class Shape { points, edges, triangles };
+    [[nodiscard]] static const BoxTree& tree_of(Shape shape, const Side& side) {
+        return shape == Shape::points ? side.points : shape == Shape::edges ? side.edges : side.triangles;
+    }
 
     template <class Nodes>
-    [[nodiscard]] Group fitted(const BoxTree& tree, const std::vector<Nodes>& features) const {
+    [[nodiscard]] BoxTree::MovingFit fitted(const BoxTree& tree, const std::vector<Nodes>& features) const {
         const std::vector<Bounds> start = boxes_of(features, x_, {}, margin_ / 2);
-        if (dx_.empty()) return {&tree, {tree.fit(start), {}, {}}};
-        return {&tree, tree.fit(start, boxes_of(features, x_, dx_, margin_ / 2), moving_ones(features, dx_))};
+        if (dx_.empty()) return {tree.fit(start), {}, {}};
+        return tree.fit(start, boxes_of(features, x_, dx_, margin_ / 2), moving_ones(features, dx_));
+    }
+
+    [[nodiscard]] Group fitted(Shape shape, const Side& side) const {
+        const BoxTree& tree = tree_of(shape, side);
+        BoxTree::MovingFit fit = shape == Shape::points  ? fitted(tree, side.surface.points)
+                                 : shape == Shape::edges ? fitted(tree, side.surface.edges)
+                                                         : fitted(tree, side.surface.triangles);
+        return {&tree, std::make_shared<const BoxTree::MovingFit>(std::move(fit))};
+    }
+
+    /// Where the points of the obstacles are, unless one of them moves.
+    [[nodiscard]] std::optional<std::vector<Vec3>> still_obstacles() const {
+        std::vector<Vec3> at;
+        for (const int point : contact_.others_.surface.points) {
+            if (!dx_.empty() && node_at(dx_, point) != Vec3{}) return std::nullopt;
+            at.push_back(node_at(x_, point));
+        }
+        return at;
+    }
+
+    /// Of the obstacles.
+    [[nodiscard]] Group known_or_fitted(Shape shape) {
+        const Side& side = contact_.others_;
+        if (!asked_for_obstacles_) obstacles_ = still_obstacles();
+        asked_for_obstacles_ = true;
+        if (!obstacles_) return fitted(shape, side);
+        const StillBoxes::Use use{shape, margin_, !dx_.empty()};
+        StillBoxes& known = contact_.memory_->still;
+        if (auto fit = known.find(use, *obstacles_)) return {&tree_of(shape, side), std::move(fit)};
+        Group group = fitted(shape, side);
+        known.keep(use, *obstacles_, group.fit);
+        return group;
     }
 
     /// The group, built on first use.
     const Group& group(Shape shape, std::size_t k) {
         const auto [entry, fresh] = groups_.try_emplace({shape, k});
         if (!fresh) return entry->second;
-        const Side& side = contact_.side(k);
-        entry->second = shape == Shape::points  ? fitted(side.points, side.surface.points)
-                        : shape == Shape::edges ? fitted(side.edges, side.surface.edges)
-                                                : fitted(side.triangles, side.surface.triangles);
+        constexpr std::size_t obstacles = 1;
+        entry->second = k == obstacles ? known_or_fitted(shape) : fitted(shape, contact_.side(k));
         return entry->second;
     }
 
@@ -203,10 +294,10 @@ private:
     void look(const Family& f, std::size_t l, const Visit& visit) const {
         const Group &a = *f.first, &b = *f.second;
         const auto found = [&](int i, int j) { offer(f, i, j, visit); };
-        if (a.fit.end.nodes.empty())
-            a.tree->visit_overlaps(a.fit.start, l, *b.tree, b.fit.start, found);
+        if (a.fit->end.nodes.empty())
+            a.tree->visit_overlaps(a.fit->start, l, *b.tree, b.fit->start, found);
         else
-            a.tree->visit_meetings(a.fit, l, *b.tree, b.fit, found);
+            a.tree->visit_meetings(*a.fit, l, *b.tree, *b.fit, found);
     }
 
     template <class Visit>
@@ -243,6 +334,8 @@ private:
     double margin_;
     std::map<std::pair<Shape, std::size_t>, Group> groups_;
     std::map<std::size_t, Bounds> boxes_;
+    std::optional<std::vector<Vec3>> obstacles_;  ///< as still_obstacles(), once it was asked
+    bool asked_for_obstacles_ = false;
     std::vector<Family> families_;
     std::size_t leaf_count_ = 0;
 };
@@ -293,29 +386,6 @@ private:
     std::vector<double> x_;
     double slack_m_;
     std::vector<Search::Candidate> candidates_;
-};
-
-struct Contact::Memory {
-    std::mutex mutex;
-    std::vector<double> x;  ///< at the last call
-    std::shared_ptr<const Nearby> nearby;
-    int settled = 0;  ///< number of consecutive calls near the previous one
-    struct {
-        std::vector<double> x;
-        Pairs pairs;
-    } found;  ///< result of the last find: a solver asks several times for the same state
-    std::map<std::pair<std::int64_t, int>, double> from_face_m;  ///< Contact::rest_distance(), by face and point
-
-    /// The clearance at a state where nothing was near, and how useful it was.
-    struct {
-        std::shared_ptr<const Clearance> known;
-        std::vector<double> end;  ///< a state known to be clear: the end of a step
-        int served = 0;           ///< number of calls that it has answered
-        int wait = 0;             ///< number of searches before the next attempt
-        int patience = 1;
-
-        void grow_patience() { wait = patience = std::min(2 * patience, 64); }
-    } clear;
 };
 
 }  // namespace pliant::sim::contact

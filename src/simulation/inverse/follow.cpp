@@ -13,7 +13,8 @@ namespace pliant::sim::inverse {
 namespace {
 
 Work operator-(const Work& a, const Work& b) {
-    return {a.forward - b.forward, a.failed - b.failed, a.linearised - b.linearised, a.solutions - b.solutions};
+    return {a.forward - b.forward, a.failed - b.failed, a.iterations - b.iterations, a.linearised - b.linearised,
+            a.solutions - b.solutions};
 }
 
 /// Bounds of each input after `seconds`: its range, restricted by its rate.
@@ -76,6 +77,17 @@ private:
         result_.message = fmt::format("cancelled at waypoint {} of {}", waypoint + 1, task_.waypoints());
     }
 
+    /// Starts beside the search from rest share a number of iterations, and one of them may take only a part: where
+    /// bodies buckle or fold, one equilibrium can take thousands. Robots with four actuators take 300 to 700 for all.
+    /// True if there are some for one more, to which the seeker is then limited.
+    bool may_start() {
+        constexpr int of_all = 1500, of_one = 400;
+        const int spent = seeker_.work().iterations - before_starts_;
+        seeker_.limit_iterations(std::min(of_one, of_all - spent));
+        given_up_ = spent >= of_all;
+        return !given_up_;
+    }
+
     /// Inputs in whose equilibria the goals of the first waypoint are nearest, of the corners of the ranges and of more
     /// points spread over them; the nearest first. Goals out of reach are often nearest to a corner, and searches from
     /// elsewhere may end in another one.
@@ -91,7 +103,7 @@ private:
         std::erase_if(places, is_rest);  // the search began there
         for (int n = 1; n <= more_points; ++n) places.push_back(spread_point(options_.starts + n, size));
         std::vector<std::pair<double, std::size_t>> by_cost;
-        for (std::size_t k = 0; k < places.size() && !progress_.cancelled(); ++k) {
+        for (std::size_t k = 0; k < places.size() && !progress_.cancelled() && may_start(); ++k) {
             if (const auto at = seeker_.move(rest, places[k], task_.times[0], all, progress_))
                 by_cost.emplace_back(seeker_.cost(*at, 0), k);
         }
@@ -123,14 +135,20 @@ private:
                     fmt::format("from rest the path to the first waypoint ended further away; {} came nearer", name);
             best = std::move(other);
         };
-        for (int n = 0; n < options_.starts && !is_done(); ++n)
+        before_starts_ = seeker_.work().iterations;
+        for (int n = 0; n < options_.starts && !is_done() && may_start(); ++n)
             try_from(spread_point(n + 1, seeker_.space().size()),
                      fmt::format("start {} of {} spread over the ranges", n + 1, options_.starts));
-        if (options_.starts > 0 && !is_done()) {
+        if (options_.starts > 0 && !is_done() && may_start()) {
             for (const Eigen::VectorXd& inputs : nearest_places(rest, all))
-                if (!is_done()) try_from(inputs, "a start from the nearest of many more equilibria");
+                if (!is_done() && may_start()) try_from(inputs, "a start from the nearest of many more equilibria");
         }
+        seeker_.limit_iterations(0);
         if (!note_.empty()) result_.notes.push_back(note_);
+        if (given_up_ && !is_done())
+            result_.notes.emplace_back(
+                "not all starts were tried, since equilibria take long to find there; there may be inputs that come "
+                "nearer to the first waypoint");
         if (progress_.cancelled() && !(best && best->reached)) {
             stop(0);
             return std::nullopt;
@@ -179,6 +197,8 @@ private:
     Seeker seeker_;
     Point now_;
     std::string note_;
+    int before_starts_ = 0;  ///< iterations of the search from rest
+    bool given_up_ = false;  ///< not all starts were tried
     InverseResult result_;
 };
 

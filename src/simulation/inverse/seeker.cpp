@@ -73,11 +73,22 @@ Bounds Seeker::whole_range() const {
             std::vector<bool>(count, false)};
 }
 
+void Seeker::limit_iterations(int most) {
+    last_iteration_ = most > 0 ? work_.iterations + most : 0;
+}
+
+StepReport Seeker::drive(RobotState& robot, const Inputs& inputs, const Progress& progress, const State* expected) {
+    ++work_.forward;
+    const int left = last_iteration_ > 0 ? std::max(1, last_iteration_ - work_.iterations) : 0;
+    StepReport report = stepper_->drive(robot, inputs, progress, expected, {}, left);
+    work_.iterations += report.iterations;
+    return report;
+}
+
 std::optional<Point> Seeker::move(const Point& from, const Eigen::VectorXd& inputs, double time, const Bounds& bounds,
                                   const Progress& progress, std::string* why) {
     Point to{from.robot, inputs};
-    ++work_.forward;
-    const StepReport report = stepper_->drive(to.robot, space_.inputs(inputs, time), progress);
+    const StepReport report = drive(to.robot, space_.inputs(inputs, time), progress);
     if (!report.arrived) {
         ++work_.failed;
         if (why != nullptr) *why = report.reason;
@@ -217,11 +228,10 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
     const Point& from = has_memory_ ? search.base : search.now;
     Trial trial;
     Point to{from.robot, wanted};
-    ++work_.forward;
     std::optional<State> expected;  // with friction the result depends on the initial guess, as later in the program
     if (!has_memory_) expected = sensitivity_->expected(*stepper_, search.now.robot.now.state, step);
     const Inputs inputs = space_.inputs(wanted, task_->times[search.waypoint]);
-    const StepReport report = stepper_->drive(to.robot, inputs, progress, expected ? &*expected : nullptr);
+    const StepReport report = drive(to.robot, inputs, progress, expected ? &*expected : nullptr);
     trial.arrived = report.arrived;
     trial.reason = report.reason;
     if (!report.arrived) {
@@ -349,7 +359,7 @@ void Seeker::minimise(Search& search, const Progress& progress) {
     bool usable = sensitivity_ && is_proven_ && price_factor_ == search.price.factor && treats_as_it_is(search.now);
     for (int moves = 0; moves < most_moves && radius_ > smallest_radius;) {
         if (!search.is_priced() && distance(search.cost) <= aim) return;
-        if ((search.cancelled = progress.cancelled())) return;
+        if ((search.cancelled = progress.cancelled()) || is_used_up()) return;
         if (!usable && !linearise(search)) return;
         const BoundedStep step = best_step(search);
         const bool solved = sensitivity_->status().has_value();

@@ -57,6 +57,7 @@ struct Found {
 struct Work {
     int forward = 0;     ///< number of equilibria solved for
     int failed = 0;      ///< of these: not found
+    int iterations = 0;  ///< of the solver, for all of them
     int linearised = 0;  ///< states at which the equations were linearised and factorised
     int solutions = 0;   ///< solves with those equations
 };
@@ -70,6 +71,9 @@ public:
     [[nodiscard]] const InputSpace& space() const { return space_; }
     [[nodiscard]] const GoalRows& rows() const { return rows_; }
     [[nodiscard]] Work work() const;
+    /// From here on the solver may take so many iterations: what needs more is not found, and a search ends where it
+    /// is. 0: as many as it takes.
+    void limit_iterations(int most);
 
     /// Solves for the equilibrium at these inputs and program time, ramping linearly from the current one. Empty: there
     /// is no equilibrium along the ramp, or it was cancelled; `why` says so. Slack is taken up within the bounds.
@@ -88,6 +92,9 @@ public:
 private:
     struct Search;
     struct Trial;
+    [[nodiscard]] StepReport drive(RobotState& robot, const Inputs& inputs, const Progress& progress,
+                                   const State* expected = nullptr);
+    [[nodiscard]] bool is_used_up() const { return last_iteration_ > 0 && work_.iterations >= last_iteration_; }
     void minimise(Search& search, const Progress& progress);
     void lower_price(Search& search, const Progress& progress);
     [[nodiscard]] bool linearise(Search& search);
@@ -128,6 +135,7 @@ private:
     Eigen::VectorXd last_end_;  ///< (inputs) at the end of the last search
     double radius_ = 0;
     Work work_;
+    int last_iteration_ = 0;  ///< of `work_`; 0: no limit
 };
 
 }  // namespace pliant::sim::inverse

@@ -89,6 +89,7 @@ struct Stepper::Target {
     double* error_m = nullptr;  ///< receives the error in time if requested; the step is rejected if it is above the
                                 ///< next
     double largest_error_m = 0;
+    int iteration_limit = 0;  ///< 0: that of the options
 };
 
 Stepper::Stepper(const Model& model, const StepperOptions& options)
@@ -179,7 +180,7 @@ StepReport Stepper::stay(const RobotState& robot, Inputs wanted) const {
 }
 
 StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progress& progress, const State* expected,
-                          const std::function<void(double share)>& after_piece) {
+                          const std::function<void(double share)>& after_piece, int most_iterations) {
     for (std::size_t a = 0; a < steered(); ++a) {
         Drive& drive = robot.inputs.drives[a];
         if (drive.kind == wanted.drives[a].kind) continue;
@@ -201,6 +202,7 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     const auto inputs_at = [&](double along) { return between(begin, wanted, (along - from) / length); };
     StepPath path{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
                   (is_adaptive() ? smallest_adaptive_share : smallest_share) * length, onward, expected};
+    path.most_iterations = most_iterations;
     if (after_piece) path.after_piece = [&](const RobotState& at) { after_piece((at.now.along - from) / length); };
     if (in_time) {
         const double longest = std::max(options_.time_unit, options_.dynamics->time_step_s);
@@ -273,10 +275,17 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
     int in_vain = 0;  // iterations of the attempts since the last one that succeeded
     FailedAttempt last;
     while (robot.now.along < path.end) {
+        const int left = path.most_iterations - report.iterations;
+        if (path.most_iterations > 0 && left <= 0) {
+            last = {fmt::format("it takes more than {} iterations", path.most_iterations), false};
+            break;
+        }
         const double along = robot.now.along + piece;
         const double end = along >= path.end - rounding * path.shortest_piece ? path.end : along;
         const State* expected = end == path.end ? path.expected : nullptr;
-        const StepOutcome outcome = go(robot, {end, path.at(end), path.onward, expected}, report, progress);
+        Target target{end, path.at(end), path.onward, expected};
+        if (path.most_iterations > 0) target.iteration_limit = left;
+        const StepOutcome outcome = go(robot, target, report, progress);
         if (outcome.converged) {
             in_vain = 0;
             if (path.longest_piece > 0) piece = longest;
@@ -320,7 +329,7 @@ std::optional<State> Stepper::relax(const RobotState& robot, Controls controls, 
         now.joint_start = system_.joint_coordinates(at.x, last);
         State next = at;
         solvers_.restart();
-        const StepOutcome outcome = settle(robot, now, next, progress, std::nullopt);
+        const StepOutcome outcome = settle(robot, now, next, progress, std::nullopt, options_.iteration_limit);
         report.iterations += outcome.iterations;
         if (!outcome.converged) {
             share *= loss;
@@ -506,7 +515,8 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
     }
     next = std::move(start.state);
     solvers_.restart();
-    StepOutcome outcome = settle(robot, controls, next, progress, std::move(start.evaluation));
+    const int limit = target.iteration_limit > 0 ? target.iteration_limit : options_.iteration_limit;
+    StepOutcome outcome = settle(robot, controls, next, progress, std::move(start.evaluation), limit);
     if (tether_dt_s_ > 0 && outcome.converged && model_.contact(controls.met) != nullptr && !system_.has_friction())
         settle_tether(controls, next, progress, outcome);
     return outcome;
@@ -529,8 +539,8 @@ void Stepper::settle_tether(const Controls& controls, State& next, const Progres
 
 /// `known`: evaluation of `next`, used if there is no friction.
 StepOutcome Stepper::settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
-                            std::optional<Evaluation> known) {
-    return settle_friction(system_, solvers_, {options_.tolerance, options_.iteration_limit}, friction_rounds,
+                            std::optional<Evaluation> known, int iteration_limit) {
+    return settle_friction(system_, solvers_, {options_.tolerance, iteration_limit}, friction_rounds,
                            {from.now.state, from.controls, from.drives}, controls, next, progress, std::move(known));
 }
 
@@ -557,7 +567,7 @@ StepReport Stepper::settle_beside(RobotState& robot, State guess, const Progress
     Controls controls = robot.controls;
     controls.drives = robot.drives;
     solvers_.restart();
-    StepOutcome outcome = settle(robot, controls, guess, progress, std::nullopt);
+    StepOutcome outcome = settle(robot, controls, guess, progress, std::nullopt, options_.iteration_limit);
     report.arrived = outcome.converged;
     report.loose = outcome.loose;
     report.reason = outcome.reason;

@@ -38,6 +38,7 @@ struct StepPath {
     /// Called with every intermediate state of a step, including its end. May be empty.
     std::function<void(const RobotState&)> after_piece{};
     double longest_piece = 0;  ///< 0: the whole step
+    int most_iterations = 0;   ///< of all pieces together, after which it has not arrived; 0: no such limit
 };
 
 /// Result of a step.
@@ -90,10 +91,10 @@ public:
     /// until `wanted.time`, which must be later; at the same time, up to rounding, it arrives without a change of
     /// `robot` if the drives are the same too. If it does not arrive, `robot` and its inputs are as far as they got.
     /// `expected`: approximate final state; null: unknown. `after_piece` is told the share of the path that is done;
-    /// may be empty.
+    /// may be empty. `most_iterations`: as in StepPath; not with an adapted step length.
     [[nodiscard]] StepReport drive(RobotState& robot, const Inputs& wanted, const Progress& progress,
                                    const State* expected = nullptr,
-                                   const std::function<void(double share)>& after_piece = {});
+                                   const std::function<void(double share)>& after_piece = {}, int most_iterations = 0);
     /// True if two times differ by no more than rounding: a step in time so short would divide rounding errors by it.
     [[nodiscard]] bool is_same_time(double a, double b) const;
     /// Tries to find an equilibrium at `controls` from `state`. False: none was found, and `state` is unusable.
@@ -139,7 +140,7 @@ private:
                                              const Progress& progress);
     [[nodiscard]] StepReport step_by_error(RobotState& robot, const StepPath& path, const Progress& progress);
     [[nodiscard]] StepOutcome settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
-                                     std::optional<Evaluation> known);
+                                     std::optional<Evaluation> known, int iteration_limit);
     void settle_tether(const Controls& controls, State& next, const Progress& progress, StepOutcome& outcome);
     void accept(RobotState& robot, const Target& target, Controls controls, State next, int touching,
                 StepOutcome outcome);
