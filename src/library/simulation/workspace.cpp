@@ -41,7 +41,7 @@ public:
         KeptPieces kept(library::value_of(CheckpointFolder::open(folder, origin_name)), origin);
         if (library::value_of(read_file(folder / origin_name)) != origin)
             throw Failure(Failure::Kind::input,
-                          folder.string() + ": is of another robot file, of other options or of an earlier Pliant",
+                          folder.string() + ": is of another robot file, or a file that it names, the options or Pliant have changed since",
                           folder.string());
         return kept;
     }

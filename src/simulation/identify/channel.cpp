@@ -78,14 +78,14 @@ Angle angle_between(const Vector3d& a, const Vector3d& b) {
     return angle;
 }
 
-/// The markers in "A-B-C", whose names may contain hyphens themselves; empty: no match.
+/// The markers in "A-B-C", each another one, whose names may contain hyphens themselves; empty: no match.
 std::vector<std::size_t> markers_in(const std::vector<sim::Marker>& markers, std::string_view text, std::size_t count) {
     for (std::size_t m = 0; m < markers.size(); ++m) {
         const std::string& name = markers[m].name;
         if (count == 1 && text == name) return {m};
         if (count == 1 || !text.starts_with(name + "-")) continue;
         std::vector<std::size_t> rest = markers_in(markers, text.substr(name.size() + 1), count - 1);
-        if (rest.empty()) continue;
+        if (rest.empty() || std::ranges::find(rest, m) != rest.end()) continue;
         rest.insert(rest.begin(), m);
         return rest;
     }

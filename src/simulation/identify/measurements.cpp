@@ -154,11 +154,17 @@ Result<std::optional<MeasuredValue>> read_value(const CsvTable& table, const Csv
     if (!value) return tl::unexpected(value.error());
     MeasuredValue measured{row.line, 0, channel, *value};
     if (!at.scatter) return measured;
-    const auto scatter = table.number(row, *at.scatter, table.columns[*at.scatter]);
+    const std::string& name = table.columns[*at.scatter];
+    const auto given = table.cell(row, *at.scatter);
+    if (!given) return tl::unexpected(given.error());
+    if (given->empty())
+        return input_error_at(table.file, row.line, "{} is empty, but {} has a value; give both or none", name,
+                              header.channels[channel].column);
+    const auto scatter = table.number(row, *at.scatter, name);
     if (!scatter) return tl::unexpected(scatter.error());
     if (!(*scatter > 0))
         return input_error_at(table.file, row.line, "{} {:g} is not possible; a scatter is above zero",
-                              table.columns[*at.scatter], *scatter);
+                              name, *scatter);
     measured.scatter = *scatter;
     return measured;
 }

@@ -120,6 +120,9 @@ TEST_CASE("errors in measurements name file and line") {
     check_problem("time,tip_x_mm\n1,2,3\n", "m.csv:2: 3 columns, the first line names 2");
     check_problem("time,tip_x_mm,tip_x_mm_scatter\n1,59,0\n",
                   "m.csv:2: tip_x_mm_scatter 0 is not possible; a scatter is above zero");
+    check_problem("time,tip_x_mm,tip_x_mm_scatter\n1,59,\n",
+                  "m.csv:2: tip_x_mm_scatter is empty, but tip_x_mm has a value; give both or none");
+    check_problem("time,tip-middle-tip_angle_deg\n1,59\n", "m.csv:1: the robot has nothing that column");
     check_problem("time,tip_x_mm,tip_x_mm_scatter\n1,59,\n", "m.csv:2: tip_x_mm_scatter \"\" is not a number");
     check_problem("time,use,tip_x_mm\n1,test,59\n", "m.csv:2: use \"test\" is neither fit nor judge");
     check_problem("time,tip_x_mm\n1,\n", "m.csv: no row has a value");
