@@ -40,9 +40,11 @@ public:
             throw Failure(Failure::Kind::input, folder.string() + ": holds no search to go on with", folder.string());
         KeptPieces kept(library::value_of(CheckpointFolder::open(folder, origin_name)), origin);
         if (library::value_of(read_file(folder / origin_name)) != origin)
-            throw Failure(Failure::Kind::input,
-                          folder.string() + ": is of another robot file, or a file that it names, the options or Pliant have changed since",
-                          folder.string());
+            throw Failure(
+                Failure::Kind::input,
+                folder.string() +
+                    ": is of another robot file, or a file that it names, the options or Pliant have changed since",
+                folder.string());
         return kept;
     }
 

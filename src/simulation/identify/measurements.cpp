@@ -163,8 +163,7 @@ Result<std::optional<MeasuredValue>> read_value(const CsvTable& table, const Csv
     const auto scatter = table.number(row, *at.scatter, name);
     if (!scatter) return tl::unexpected(scatter.error());
     if (!(*scatter > 0))
-        return input_error_at(table.file, row.line, "{} {:g} is not possible; a scatter is above zero",
-                              name, *scatter);
+        return input_error_at(table.file, row.line, "{} {:g} is not possible; a scatter is above zero", name, *scatter);
     measured.scatter = *scatter;
     return measured;
 }
