@@ -1,6 +1,6 @@
 // A number field. An invalid value is explained beside it, with the allowed range; leaving the field restores the last
-// valid value.
-import { useRef, useState } from 'preact/hooks';
+// valid value; what was wrong stays to be read for a while.
+import { useEffect, useRef, useState } from 'preact/hooks';
 
 export interface Range {
   from: number;
@@ -23,6 +23,8 @@ export function inRange(v: number, { from, to, open }: Range): boolean {
 /// The error of a typed text.
 export const wrongText = (typed: string, range: Range, unit: string) => `${typed && `${typed}: `}${rangeText(range, unit)}`;
 
+const readFor = 6000; // ms
+
 interface Props {
   value: number;
   range: Range;
@@ -40,17 +42,23 @@ export function NumberField({ value, range, unit, label, step = 'any', disabled,
   // Text being typed is kept, whatever else on the page is redrawn meanwhile, even if the connection is lost.
   const [typed, setTyped] = useState<string | null>(null);
   const open = useRef(false); // a typed value has not been applied yet
+  const timer = useRef(0);
+  useEffect(() => () => clearTimeout(timer.current), []);
+  const judge = (why: string) => {
+    clearTimeout(timer.current);
+    setWrong(why);
+  };
   const type = (text: string) => {
-    setWrong('');
+    judge('');
     setTyped(text);
     open.current = true;
   };
   const take = async (input: HTMLInputElement) => {
     if (!open.current || disabled) return;
     const v = input.valueAsNumber;
-    if (!inRange(v, range)) return setWrong(wrongText(input.value, range, unit));
+    if (!inRange(v, range)) return judge(wrongText(input.value, range, unit));
     open.current = false;
-    setWrong('');
+    judge('');
     await onValue(v);
     if (!open.current) setTyped(null);
   };
@@ -59,6 +67,8 @@ export function NumberField({ value, range, unit, label, step = 'any', disabled,
     open.current = false;
     setTyped(null);
     input.value = String(value); // also if the browser holds an invalid number, reported as ''
+    clearTimeout(timer.current);
+    timer.current = window.setTimeout(() => setWrong(''), readFor);
   };
   return (
     <span class="number-field">
@@ -66,7 +76,7 @@ export function NumberField({ value, range, unit, label, step = 'any', disabled,
         <input
           type="number"
           aria-label={label}
-          aria-invalid={wrong !== ''}
+          aria-invalid={wrong !== '' && typed !== null}
           data-testid={testId}
           step={step}
           value={typed ?? value}

@@ -1,6 +1,7 @@
 // Edits the robot file without typing: parameters, materials, and things placed by clicking on the robot. The studio
 // makes each change in the text, keeping comments and order.
 import { computed, effect, signal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
 import { counted } from '../counted';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
@@ -109,12 +110,19 @@ function finishCable() {
   placing.value = null;
 }
 
+function stopPlacing() {
+  placed.value = [];
+  boxPlace.value = null;
+  placing.value = null;
+}
+
 function Placing() {
   const kind = placing.value;
+  useEffect(() => stopPlacing, []); // on another panel nothing tells that a click would place something
   const start = (k: Kind) => {
-    placed.value = [];
-    boxPlace.value = null;
-    placing.value = placing.value === k ? null : k;
+    const again = placing.value === k;
+    stopPlacing();
+    if (!again) placing.value = k;
   };
   const field = (label: string, s: typeof depth, id: string) => (
     <label class="row" key={id}>
