@@ -208,10 +208,15 @@ Result<Studio::Saved> Studio::save(const std::string& name, bool overwrite) {
     }
     // In another folder the same names are those of other files.
     std::vector<std::string> outside = document_.outside;
-    if (path->parent_path() != document_.file.parent_path())
+    const bool moves = path->parent_path() != document_.file.parent_path();
+    if (moves)
         std::erase_if(outside, [](const std::string& text) { return std::filesystem::path(text).is_relative(); });
     if (Status inside = folder_.check_texts(document_.text, *path, outside); !inside)
         return tl::unexpected(inside.error());
+    // A text with an error of its own may be saved anywhere.
+    if (moves && robot::parse_robot(document_.text, document_.file)) {
+        if (const auto there = robot::parse_robot(document_.text, *path); !there) return tl::unexpected(there.error());
+    }
     if (Status status = write_file(*path, document_.text); !status) return tl::unexpected(status.error());
     document_.name = path->lexically_relative(folder_.path()).generic_string();
     document_.file = *path;

@@ -190,6 +190,28 @@ TEST_CASE("a new robot is never saved over a file that was not opened") {
     CHECK(save_as("gripper.toml").status == 200);
 }
 
+TEST_CASE("a robot is not saved where the files that it names are not found") {
+    const Project project;
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
+    fs::create_directory(project.base / "project" / "sub");
+    const auto save_as = [&](const std::string& name) {
+        return ask(studio, "POST", "/api/robot/save", R"({"name":")" + name + R"("})", "first_page");
+    };
+    REQUIRE(ask(studio, "POST", "/api/robot/new", "robot = \"bar.toml\"\n", "first_page").status == 200);
+    const Response moved = save_as("sub/based.toml");
+    CHECK(moved.status == 422);
+    CHECK(holds(moved.body, "bar.toml"));
+    CHECK_FALSE(fs::exists(project.base / "project" / "sub" / "based.toml"));
+    CHECK(save_as("based.toml").status == 200);
+    // It names no file; and what is in error here anyway may be kept anywhere.
+    REQUIRE(ask(studio, "POST", "/api/robot/new", project_bar, "first_page").status == 200);
+    CHECK(save_as("sub/bar.toml").status == 200);
+    REQUIRE(ask(studio, "POST", "/api/robot/new", "robot = \"later.toml\"\n", "first_page").status == 200);
+    CHECK(save_as("sub/unfinished.toml").status == 200);
+}
+
 TEST_CASE("a changed robot goes to the state that was wanted before; another robot starts from rest") {
     const Project project;
     const auto owner = built(project);
