@@ -633,6 +633,9 @@ test('a geometry file becomes a robot: with its unit and bodies, fixed at one en
   assert.deepEqual(page.bodiesOf(plate, 'two.3mf', 'm', ['soft']), [
     { name: 'soft 1', material: 'm', geometry: 'two.3mf', part: 'soft' },
     { name: 'stiff', material: 'm', geometry: 'two.3mf', part: 'stiff' },
+  // A thin sheet is not held at its other side as well.
+  assert.match(page.robotOf({ ...surface, high: [100, 60, 1.5] }, 'mm', 'x', '-z'), /box = \[\[-2, -2, -0.375\], \[102, 62, 0.375\]\]/);
+  assert.match(page.robotOf({ ...surface, low: [0, 0, 1e4], high: [100, 60, 10000.2] }, 'mm', 'x', '-z'), /box = \[\[-2, -2, 9999.95\], \[102, 62, 10000.05\]\]/);
   ]);
   const tets = { ...surface, name: 'a.vtk', kind: 'tets', parts: ['body'] };
   assert.match(page.robotOf(tets, 'mm', 'm', '-x'), /region = "body"\n\n\[mesh\]\nfile = "a.vtk"\n/);

@@ -131,8 +131,14 @@ export function robotOf(content: Content, unit: string, material: string, side: 
   const longest = Math.max(...size);
   const axis = 'xyz'.indexOf(side.at(-1)!);
   const edge = side.startsWith('-') ? from[axis] : to[axis];
-  const slab = 0.02 * longest;
-  const bounds = (k: number, end: number) => (k === axis ? round(edge + (end ? slab : -slab), 6) : round((end ? to : from)[k] + (end ? slab : -slab), 6));
+  const margin = 0.02 * longest;
+  // Of a thin sheet only the held side is in the box, and not the other one.
+  const slab = Math.min(margin, 0.25 * size[axis]);
+  const bounds = (k: number, end: number) => {
+    const out = k === axis ? slab : margin;
+    const at = k === axis ? edge : (end ? to : from)[k];
+    return round(at + (end ? out : -out), 9);
+  };
   const box = [0, 1].map((end) => `[${[0, 1, 2].map((k) => bounds(k, end)).join(', ')}]`).join(', ');
   const bodies = bodiesOf(content, content.name, material, []);
   const entry = (body: Record<string, unknown>) => ['[[body]]', ...Object.entries(body).map(([key, v]) => `${key} = ${toml(v)}`)].join('\n');
