@@ -25,17 +25,6 @@ namespace fs = std::filesystem;
 /// File name for a robot that was given as text, so that its program can refer to it.
 constexpr const char* robot_name = "robot.toml";
 
-/// With friction the path matters: what was found in one step is repeated in one step.
-int steps_per_waypoint(const InverseResult::Data& found) {
-    const robot::Robot& robot = found.model->scene.robot;
-    const bool has_friction = std::ranges::any_of(robot.cables, [](const auto& c) { return c.friction > 0; }) ||
-                              (robot.contact && robot.contact->friction > 0) ||
-                              std::ranges::any_of(robot.obstacles, [](const auto& o) { return o.friction > 0; });
-    constexpr std::size_t fewest = 10;
-    const std::size_t waypoints = found.task.waypoints();
-    return has_friction ? 1 : static_cast<int>((fewest + waypoints - 1) / waypoints);
-}
-
 /// The text of a program, and of the robot it is based on if that is not a file.
 struct ProgramFiles {
     std::string program;
@@ -144,7 +133,7 @@ std::vector<std::string> departures(const InverseResult::Data& found, const sim:
 /// nothing could be drawn.
 std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& folder, const fs::path& final_folder,
                               Progress& progress, library::Drawing& drawing) {
-    const int steps_each = steps_per_waypoint(found);
+    const int steps_each = robot::steps_per_point(found.model->scene.robot, found.task.waypoints());
     const ProgramFiles files = program_files(found, final_folder, steps_each);
     if (!files.robot.empty()) library::check(write_file(folder / robot_name, files.robot));
     library::check(write_file(folder / "program.toml", files.program));

@@ -150,30 +150,47 @@ Status check_program_names(const Robot& robot, const std::filesystem::path& file
     return unlike_names(file, all, written_columns(robot, all, points));
 }
 
-Result<std::string> program_text(const Robot& robot, const std::filesystem::path& file,
-                                 const std::vector<std::string>& assignments, const std::filesystem::path& folder,
-                                 const std::vector<ProgramPoint>& points, int steps_per_point, double tolerance) {
+int steps_per_point(const Robot& robot, std::size_t points) {
+    const auto rubs = [](const auto& thing) { return thing.friction > 0; };
+    if (std::ranges::any_of(robot.cables, rubs) || (robot.contact && rubs(*robot.contact)) ||
+        std::ranges::any_of(robot.obstacles, rubs))
+        return 1;
+    constexpr std::size_t fewest = 10;
+    return static_cast<int>((fewest + points - 1) / points);
+}
+
+Result<ProgramEntries> program_entries(const Robot& robot, const std::filesystem::path& file,
+                                       const std::vector<ProgramPoint>& points, int steps_per_point) {
     const std::vector<DrivenValue> all = driven_values(robot);
     const std::vector<Column> columns = written_columns(robot, all, points);
     if (Status status = unlike_names(file, all, columns); !status) return tl::unexpected(status.error());
+    ProgramEntries program{
+        points.size() * static_cast<std::size_t>(steps_per_point), fmt::format("{} s", points.size()), {}};
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        program.keys += fmt::format("{}[[program.key]]\ntime = \"{} s\"\n", k > 0 ? "\n" : "", k + 1);
+        for (const Column& column : columns) {
+            const std::string& unit = column.of->unit;
+            program.keys += fmt::format("{} = ", quoted(column.of->name));
+            program.keys += unit.empty() ? fmt::format("{}\n", column.values[k])
+                                         : fmt::format("\"{} {}\"\n", column.values[k], unit);
+        }
+    }
+    return program;
+}
+
+Result<std::string> program_text(const Robot& robot, const std::filesystem::path& file,
+                                 const std::vector<std::string>& assignments, const std::filesystem::path& folder,
+                                 const std::vector<ProgramPoint>& points, int steps_per_point, double tolerance) {
+    const Result<ProgramEntries> program = program_entries(robot, file, points, steps_per_point);
+    if (!program) return tl::unexpected(program.error());
     std::string text = fmt::format("robot = {}\n", quoted(relative_path(file, folder)));
     if (!assignments.empty()) {
         text += "set = [";
         for (std::size_t k = 0; k < assignments.size(); ++k) text += (k > 0 ? ", " : "") + quoted(assignments[k]);
         text += "]\n";
     }
-    text += fmt::format("\n[program]\nsteps = {}\nduration = \"{} s\"\ntolerance = {}\n",
-                        points.size() * static_cast<std::size_t>(steps_per_point), points.size(), tolerance);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        text += fmt::format("\n[[program.key]]\ntime = \"{} s\"\n", k + 1);
-        for (const Column& column : columns) {
-            const std::string& unit = column.of->unit;
-            text += fmt::format("{} = ", quoted(column.of->name));
-            text += unit.empty() ? fmt::format("{}\n", column.values[k])
-                                 : fmt::format("\"{} {}\"\n", column.values[k], unit);
-        }
-    }
-    return text;
+    return text + fmt::format("\n[program]\nsteps = {}\nduration = {}\ntolerance = {}\n\n{}", program->steps,
+                              quoted(program->duration), tolerance, program->keys);
 }
 
 }  // namespace pliant::robot

@@ -10,6 +10,7 @@
 #include "presentation/report/inverse_tables.hpp"
 #include "presentation/report/workspace_files.hpp"
 #include "robot/bodies/build.hpp"
+#include "robot/file/program_writer.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/identify/identify.hpp"
 #include "simulation/inverse/follow.hpp"
@@ -24,14 +25,42 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// The result of a search of this robot.
+Json result_json(const char* kind, const Built& built, Json found) {
+    return {{"kind", kind}, {"revision", built.revision}, {"opened", built.source.opened}, {"found", std::move(found)}};
+}
+
+/// The waypoints as a program of the robot's own file, as `pliant inverse` writes one: `keys`, and `changes` of other
+/// values. `error`: there can be none.
+Json program_json(const Built& built, const sim::InverseTask& task, const sim::inverse::InverseResult& found) {
+    const robot::Robot& robot = built.robot;
+    std::vector<robot::ProgramPoint> points;
+    for (const sim::inverse::Waypoint& at : found.waypoints) {
+        robot::ProgramPoint point{at.state.time, {}};
+        for (std::size_t i = 0; i < at.values.size(); ++i) point.values.emplace_back(task.inputs[i].name, at.values[i]);
+        points.push_back(std::move(point));
+    }
+    if (points.empty()) return {{"error", "no waypoint has a state"}};
+    const int steps_each = robot::steps_per_point(robot, points.size());
+    const Result<robot::ProgramEntries> program = robot::program_entries(robot, built.source.file, points, steps_each);
+    if (!program) return {{"error", program.error().message}};
+    Json changes = Json::array({{{"key", "program.steps"}, {"value", program->steps}},
+                                {{"key", "program.duration"}, {"value", program->duration}}});
+    const double tolerance = robot::goal_tolerance(robot.program);
+    if (tolerance < robot.program.tolerance) changes.push_back({{"key", "program.tolerance"}, {"value", tolerance}});
+    return {{"keys", program->keys}, {"changes", std::move(changes)}};
+}
+
 Result<SearchResult> found_inputs(const Built& built, const sim::InverseTask& task, Progress& progress) {
     sim::StepperOptions stepping = sim::stepper_options(built.robot.program);
     stepping.tolerance = robot::goal_tolerance(built.robot.program);
     sim::Stepper stepper(built.model, stepping);
     const sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {}, progress);
     if (found.cancelled) return tl::unexpected(cancelled());
-    Json json = parse_json(report::inverse_json({built.robot.name, built.model, task, found}));
-    return SearchResult{dumped({{"kind", "goal"}, {"revision", built.revision}, {"found", std::move(json)}})};
+    Json json =
+        result_json("goal", built, parse_json(report::inverse_json({built.robot.name, built.model, task, found})));
+    json["program"] = program_json(built, task, found);
+    return SearchResult{dumped(json)};
 }
 
 /// The current robot with other parameters, on the page's current mesh.
@@ -76,7 +105,7 @@ Result<SearchResult> identified(const Built& built, const IdentifyOrder& order, 
         result.plots.push_back({named.file, std::move(*png)});
     }
     json["plots"] = result.plots.size();
-    result.json = dumped({{"kind", "identify"}, {"revision", built.revision}, {"found", std::move(json)}});
+    result.json = dumped(result_json("identify", built, std::move(json)));
     return result;
 }
 
@@ -117,7 +146,7 @@ Result<SearchResult> workspace_found(const Built& built, const sim::InverseTask&
     Json reach = Json::array();
     for (std::size_t m = 0; m < built.model.description().markers.size(); ++m) reach.push_back(reach_of(report, m));
     Json json = {{"summary", summary}, {"reach", reach}, {"csv", report::workspace_csv(report)}};
-    return SearchResult{dumped({{"kind", "workspace"}, {"revision", built.revision}, {"found", std::move(json)}})};
+    return SearchResult{dumped(result_json("workspace", built, std::move(json)))};
 }
 
 }  // namespace
@@ -167,8 +196,8 @@ Status SearchSession::sweep(std::shared_ptr<const Built> built, SweepOrder order
     return begin("sweep", [built = std::move(built), order = std::move(order)](Progress& progress) {
         const Result<Sweep> found = run_sweep(built->source, order, progress);
         if (!found) return Result<SearchResult>(tl::unexpected(found.error()));
-        return Result<SearchResult>(SearchResult{dumped(
-            {{"kind", "sweep"}, {"revision", built->revision}, {"found", parse_json(sweep_json(order, *found))}})});
+        return Result<SearchResult>(
+            SearchResult{dumped(result_json("sweep", *built, parse_json(sweep_json(order, *found))))});
     });
 }
 
@@ -176,8 +205,7 @@ Status SearchSession::run_motion(std::shared_ptr<const Built> built) {
     return begin("motion", [built = std::move(built)](Progress& progress) {
         auto motion = Motion::run(built, progress);
         if (!motion) return Result<SearchResult>(tl::unexpected(motion.error()));
-        SearchResult result{
-            dumped({{"kind", "motion"}, {"revision", built->revision}, {"found", parse_json((*motion)->json())}})};
+        SearchResult result{dumped(result_json("motion", *built, parse_json((*motion)->json())))};
         result.motion = std::move(*motion);
         return Result<SearchResult>(std::move(result));
     });

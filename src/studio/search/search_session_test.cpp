@@ -96,12 +96,23 @@ TEST_CASE("a search reports its end, and its result is kept until the next searc
     const Json result = b.result();
     CHECK(result["kind"] == "goal");
     CHECK(result["revision"] == built->revision);
+    CHECK(result["opened"] == built->source.opened);
+    CHECK(result["program"]["keys"].get<std::string>().starts_with("[[program.key]]\ntime = \"1 s\"\n\"flexor\" = \""));
+    CHECK(result["program"]["changes"][0] == Json{{"key", "program.steps"}, {"value", 10}});
+    CHECK(result["program"]["changes"][1] == Json{{"key", "program.duration"}, {"value", "1 s"}});
     REQUIRE(result["found"]["waypoints"].size() == 1);
     CHECK(result["found"]["waypoints"][0]["reached"] == true);
+    // Gravity, which the search holds, does not grow again in the program.
+    b.events.clear();
+    const auto heavy = built_from(std::string(bar) + "[program]\ngravity = [0, 0, -9.81]\n");
+    REQUIRE(b.session.find_inputs(heavy, *goal_task(*heavy, goal_at(1.5))));
+    CHECK(b.end() == "");
+    const Json held = b.result();
+    CHECK(holds(held["program"]["keys"].get<std::string>(), "\"gravity\" = 1\n"));
     b.events.clear();
     REQUIRE(b.session.identify(built, {{"material.soft.nothing"}, "time,tip_z_mm\n1,1\n", "t.csv", ""}));
     CHECK(holds(b.end(), "material.soft.nothing: the robot has no such parameter"));
-    CHECK(Json::parse(b.session.result()->json) == result);
+    CHECK(Json::parse(b.session.result()->json) == held);
 }
 
 TEST_CASE("a modulus is identified from a table, with plots") {

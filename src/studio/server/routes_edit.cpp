@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 Response set_values(Studio& studio, const Request& request) {
-    if (Status known = check_body(request, {{"changes", BodyKey::Kind::any}}); !known)
+    if (Status known = check_body(request, {{"changes", BodyKey::Kind::any}, {"text"}}); !known)
         return error_response(known.error());
     const Json json = parse_json(request.body);
     if (Status list = check_changes(json); !list) return error_response(list.error());
@@ -27,7 +27,7 @@ Response set_values(Studio& studio, const Request& request) {
             return error_response(422, "changes: key and value of each are needed");
     }
     return done(studio.edit_by([&](const std::string& text) {
-        Result<std::string> next = text;
+        Result<std::string> next = json.contains("text") ? json["text"].get<std::string>() : text;
         for (const Json& change : json["changes"]) {
             next = config::with_value(*next, change["key"].get<std::string>(), toml_text(change["value"]));
             if (!next) break;
@@ -73,8 +73,9 @@ Response materials(Studio&, const Request&) {
 void add_edit_routes(std::vector<Route>& routes) {
     const std::string json = "application/json";
     routes.push_back({"POST", "/api/robot/set",
-                      "{\"changes\": [{\"key\", \"value\"}, ...]}: values of the robot file, all else as it was", json,
-                      true, set_values, json});
+                      "{\"changes\": [{\"key\", \"value\"}, ...]}: values of the robot file, all else as it was, or "
+                      "as in its new \"text\"",
+                      json, true, set_values, json});
     routes.push_back({"POST", "/api/robot/add", "{\"list\", \"entry\"}: one more entry, as of [[marker]]", json, true,
                       add_entry, json});
     routes.push_back({"POST", "/api/robot/new",

@@ -127,8 +127,9 @@ void Studio::rebuild(After after) {
         return;
     }
     document_.stamps = folder_.stamps_of(document_.text, document_.file);
-    simulation_->open({document_.file, document_.text, document_.accuracy}, after);
+    // Before the news of its building: a page must know which text these are of.
     hub_.send_text(document_event(document_));
+    simulation_->open({document_.file, document_.text, document_.accuracy, document_.opened}, after);
 }
 
 /// A text received over the network must be short, and must not make the program read files outside the folder.

@@ -812,6 +812,11 @@ TEST_CASE("values and entries of the robot file change by request, and a text ca
     CHECK(studio->document().text.find("mesh = { size = \"7 mm\" }") != std::string::npos);
     CHECK(studio->document().text.find("point = [40, 5, 4.5]") != std::string::npos);
     CHECK(studio->document().undo.size() == 1);  // both are one step
+    const Json whole = {{"text", project_bar}, {"changes", {{{"key", "program.duration"}, {"value", "2 s"}}}}};
+    CHECK(post("/api/robot/set", whole.dump()).status == 200);
+    CHECK(holds(studio->document().text, "mesh = { size = \"6 mm\""));
+    CHECK(holds(studio->document().text, "duration = \"2 s\""));
+    CHECK(studio->document().undo.size() == 2);
     CHECK(post("/api/robot/add", R"({"list": "marker", "entry": {"name": "middle", "point": [20, 5, 5]}})").status ==
           200);
     REQUIRE(studio->simulation().wait_until_built());

@@ -33,6 +33,7 @@ struct RobotText {
     std::filesystem::path file;  ///< name in messages, and base of its relative paths
     std::string text;
     Accuracy accuracy = Accuracy::automatic;
+    int opened = 0;  ///< number of the document: the same for all texts of one robot
 };
 
 /// Everything that belongs to one robot; immutable once built.

@@ -256,8 +256,9 @@ void SimulationSession::show(const std::shared_ptr<const Built>& built) {
         const std::lock_guard lock(mutex_);
         built_ = built;
         rest_measures_ = fine_->live().rest_measures();
-        scene_ = std::make_shared<const std::string>(built->scene.packet(
-            fmt::format(R"(,"revision":{},"accuracy":"{}")", built->revision, name(built->source.accuracy))));
+        scene_ = std::make_shared<const std::string>(
+            built->scene.packet(fmt::format(R"(,"revision":{},"opened":{},"accuracy":"{}")", built->revision,
+                                            built->source.opened, name(built->source.accuracy))));
     }
     forget_history();
     tell("scene", dumped({{"type", "scene"}, {"revision", built->revision}}));
