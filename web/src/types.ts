@@ -27,6 +27,7 @@ export type Accuracy = 'preview' | 'automatic' | 'fine';
 
 export interface SceneHead {
   revision: number;
+  opened: number; // number of the robot: another one was opened, or this one changed, if it has another revision only
   accuracy: Accuracy;
   robot: string;
   materials: Material[];

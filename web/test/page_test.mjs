@@ -1,7 +1,7 @@
 // The real page on the real program, as people use it.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -192,7 +192,13 @@ test('a goal is solved without editing the file: reached, or the nearest point; 
   await page.getByTestId('goal-program').click();
   await page.getByTestId('tab-file').click();
   await page.waitForFunction(() => window.pliant.robotText.value.includes('[[program.key]]'));
-  assert.match(await readRobot(page), /time = "1\.00 s"\nflexor = 0\.[89]/);
+  const written = await readRobot(page);
+  assert.match(written, /time = "1 s"\n"flexor" = 0\.[89]/);
+  assert.match(written, /duration = "2 s"/);
+  // The program passes the position that was reached.
+  writeFileSync(join(folder, 'reached.toml'), written);
+  const { steps } = JSON.parse(execFileSync(program, ['simulate', join(folder, 'reached.toml'), '--json']));
+  near(steps.find((s) => Math.abs(s.time - 1) < 1e-9).markers.tip, want, 0.12, 'tip in the program');
   await page.getByRole('button', { name: 'Undo' }).click();
   await page.waitForFunction(() => !window.pliant.robotText.value.includes('[[program.key]]'));
   await page.getByTestId('tab-goal').click();

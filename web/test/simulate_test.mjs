@@ -1,7 +1,7 @@
 // Building and understanding a robot on the page: geometry that is dropped, chambers, the gallery, sweeps, workspaces,
 // motions, a second robot beside, films.
 import assert from 'node:assert/strict';
-import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -162,11 +162,101 @@ test('unreadable files, existing files and invalid names are refused in one line
   assert.equal(readFileSync(join(folder, 'part.stl'), 'utf8'), boxStl([12, 10, 10]));
   // Into the robot that is there: another body, in its unit.
   await page.getByTestId('geometry-unit').selectOption('cm');
+  // What was typed and not applied is not lost.
+  await page.keyboard.press('Escape');
+  await page.getByTestId('tab-file').click();
+  await typeRobot(page, `${await readRobot(page)}# mine\n`);
+  await page.getByTestId('tab-move').click();
+  await page.evaluate((text) => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], 'part.stl'));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, boxStl([12, 10, 10]));
+  await page.getByTestId('geometry-new').waitFor(long);
+  await page.getByTestId('geometry-unit').selectOption('cm');
   const before = await readRobot(page);
   await page.getByTestId('geometry-add').click();
   await page.waitForFunction((b) => window.pliant.robotText.value !== b, before);
+  assert.match(await readRobot(page), /\n# mine\n/);
   assert.match(await readRobot(page), /\[\[body\]\]\nname = "part"\nmaterial = "dragon-skin-30"\ngeometry = "part.stl"\nplace = \{ scale = 10 \}/);
   assert.deepEqual(wrong.filter((w) => !/422|409/.test(w)), []);
+});
+
+/// Without a question, as another page would.
+const call = (page, path, type, body) =>
+  page.evaluate(([to, kind, text]) => fetch(to, { method: 'POST', headers: { 'Content-Type': kind, 'X-Pliant-Page': sessionStorage.getItem('pliant_page') }, body: text }).then((r) => r.status), [path, type, body]);
+
+test('a new robot gets a name of its own, where the files that it names are found', async (t) => {
+  const own = await startStudio(['block.toml'], folder);
+  t.after(() => own.stop());
+  const { page, wrong } = await openPage(browser, own.address, t);
+  await settled(page);
+  mkdirSync(join(folder, 'sub'));
+  await rebuilt(page, async () => assert.equal(await call(page, '/api/robot/new', 'text/plain', 'robot = "block.toml"\n'), 200));
+  await page.getByTestId('tab-file').click();
+  await page.getByRole('button', { name: 'Save', exact: true }).click();
+  const name = page.getByTestId('save-name');
+  await name.fill('');
+  await page.keyboard.type('sub/mine.toml');
+  await page.keyboard.press('Enter');
+  await page.locator('.notice', { hasText: 'block.toml' }).waitFor(long);
+  assert.ok(!existsSync(join(folder, 'sub', 'mine.toml')));
+  await name.fill('mine.toml');
+  await page.keyboard.press('Enter');
+  await name.waitFor({ state: 'detached' });
+  assert.equal(readFileSync(join(folder, 'mine.toml'), 'utf8'), 'robot = "block.toml"\n');
+  assert.deepEqual(wrong.filter((w) => !/422/.test(w)), []);
+});
+
+test('what belongs to one robot does not go over to another: a pinned state, a recording, what was found', async (t) => {
+  const own = await startStudio(['block.toml'], folder);
+  t.after(() => own.stop());
+  const { page, wrong } = await openPage(browser, own.address, t);
+  await settled(page);
+  await page.getByTestId('pin').click();
+  // A marker of another name is not the pinned one.
+  await page.getByTestId('tab-file').click();
+  await typeRobot(page, (await readRobot(page)).replace('name = "tip"', 'name = "end"'));
+  await rebuilt(page, () => page.getByTestId('apply').click());
+  await page.getByTestId('tab-move').click();
+  assert.match(await page.locator('.pinned-row').textContent(), /^tip pinned/);
+  await page.getByRole('button', { name: 'Record a program' }).click();
+  await page.waitForTimeout(700);
+  await page.getByRole('button', { name: 'Stop recording' }).click();
+  await page.getByRole('button', { name: /samples as program/ }).waitFor();
+  await page.getByTestId('tab-sweep').click();
+  await page.getByTestId('sweep-0-key').selectOption('material.soft.youngs_modulus');
+  await page.getByTestId('sweep-0-count').fill('1');
+  await page.getByTestId('sweep-0-count').press('Enter');
+  await page.getByTestId('find-sweep').click();
+  await page.getByTestId('sweep-found').waitFor(long);
+  await rebuilt(page, async () => assert.equal(await call(page, '/api/open', 'application/json', '{"name":"finger.toml"}'), 200));
+  await page.getByTestId('sweep-found').waitFor({ state: 'detached' });
+  assert.equal(await page.getByTestId('pinned').count(), 0);
+  assert.equal(await page.getByRole('button', { name: /samples as program/ }).count(), 0);
+  assert.deepEqual(wrong, []);
+});
+
+test('an applied change is saved by itself once the robot was built from it', async (t) => {
+  writeFileSync(join(folder, 'kept.toml'), block('1 MPa'));
+  const own = await startStudio(['kept.toml'], folder);
+  t.after(() => own.stop());
+  const { page, wrong } = await openPage(browser, own.address, t);
+  await settled(page);
+  await page.getByTestId('tab-file').click();
+  await page.getByTestId('autosave').check();
+  const there = () => readFileSync(join(folder, 'kept.toml'), 'utf8');
+  await typeRobot(page, block('2 MPa').replace('length = 40', 'length = 0'));
+  await page.getByTestId('apply').click();
+  await page.getByTestId('problems').waitFor(long);
+  await page.waitForTimeout(500);
+  assert.equal(there(), block('1 MPa'), 'not with an error');
+  await typeRobot(page, block('2 MPa'));
+  await rebuilt(page, () => page.getByTestId('apply').click());
+  for (let k = 0; k < 100 && there() !== block('2 MPa'); ++k) await page.waitForTimeout(50);
+  assert.equal(there(), block('2 MPa'));
+  await page.getByTestId('autosave').uncheck();
+  assert.deepEqual(wrong, []);
 });
 
 test('a file that was changed elsewhere is saved over only after a question', async (t) => {

@@ -314,6 +314,13 @@ test('a slowly curving recording keeps its path within 0.2 %', () => {
   });
 });
 
+test('a recorded program ends with its last key', () => {
+  page.scene.value = { head: { actuators: [actuators[0]], markers: [] } };
+  page.recorded.value = [0, 1, 2].map((value, i) => ({ time: 0.2 * i, values: { flexor: { kind: 'tension_N', value } } }));
+  assert.deepEqual(page.endOf(page.asProgram()), [{ key: 'program.duration', value: '0.40 s' }]);
+  assert.deepEqual(page.endOf(''), []);
+});
+
 test('values driven by another quantity earlier do not become keys', () => {
   page.scene.value = { head: { actuators, markers: [] } };
   const key = (time, kind, value) => ({ time, values: { flexor: { kind, value }, 'air "1"': { kind: 'volume_ratio', value: 1.5 } } });
@@ -626,6 +633,9 @@ test('a geometry file becomes a robot: with its unit and bodies, fixed at one en
   assert.match(text, /\[\[fixed\]\]\nname = "base"\nbox = \[\[-1.2, -1.2, -1.2\], \[1.2, 13.2, 11.2\]\]/);
   assert.match(text, /size = "5 mm"/);
   assert.match(page.robotOf(surface, 'mm', 'x', 'z'), /box = \[\[-1.2, -1.2, 8.8\], \[61.2, 13.2, 11.2\]\]/);
+  // A thin sheet is not held at its other side as well.
+  assert.match(page.robotOf({ ...surface, high: [100, 60, 1.5] }, 'mm', 'x', '-z'), /box = \[\[-2, -2, -0.375\], \[102, 62, 0.375\]\]/);
+  assert.match(page.robotOf({ ...surface, low: [0, 0, 1e4], high: [100, 60, 10000.2] }, 'mm', 'x', '-z'), /box = \[\[-2, -2, 9999.95\], \[102, 62, 10000.05\]\]/);
   // A file that says millimetres, in a robot of centimetres.
   const step = { ...surface, name: 'a.step', kind: 'step', unit_mm: 1 };
   assert.match(page.robotOf(step, 'cm', 'x', '-x'), /box = \[\[-0.12, -0.12, -0.12\], \[0.12, 1.32, 1.12\]\]/);
@@ -633,9 +643,6 @@ test('a geometry file becomes a robot: with its unit and bodies, fixed at one en
   assert.deepEqual(page.bodiesOf(plate, 'two.3mf', 'm', ['soft']), [
     { name: 'soft 1', material: 'm', geometry: 'two.3mf', part: 'soft' },
     { name: 'stiff', material: 'm', geometry: 'two.3mf', part: 'stiff' },
-  // A thin sheet is not held at its other side as well.
-  assert.match(page.robotOf({ ...surface, high: [100, 60, 1.5] }, 'mm', 'x', '-z'), /box = \[\[-2, -2, -0.375\], \[102, 62, 0.375\]\]/);
-  assert.match(page.robotOf({ ...surface, low: [0, 0, 1e4], high: [100, 60, 10000.2] }, 'mm', 'x', '-z'), /box = \[\[-2, -2, 9999.95\], \[102, 62, 10000.05\]\]/);
   ]);
   const tets = { ...surface, name: 'a.vtk', kind: 'tets', parts: ['body'] };
   assert.match(page.robotOf(tets, 'mm', 'm', '-x'), /region = "body"\n\n\[mesh\]\nfile = "a.vtk"\n/);

@@ -66,13 +66,36 @@ export async function apply(next: string): Promise<boolean> {
 /// Pins the current state, so that a change can be compared with it.
 export function pinNow(label: string) {
   const now = frame.peek();
-  if (now) pinned.value = { label, positions: new Float32Array(now.f32('positions')), frame: now };
+  const head = scene.peek()?.head;
+  if (now && head) pinned.value = { label, positions: new Float32Array(now.f32('positions')), frame: now, markers: head.markers.map((m) => m.name), opened: head.opened };
+}
+// It is not compared with another robot.
+effect(() => {
+  const head = scene.value?.head;
+  if (head && pinned.peek() && pinned.peek()?.opened !== head.opened) pinned.value = null;
+});
+
+/// Applies what has been typed, before something else changes the file.
+export async function applyTyped(): Promise<boolean> {
+  return text.value === theirs.value || apply(text.value);
+}
+
+export interface Change {
+  key: string;
+  value: string | number;
 }
 
 /// Values of the robot file; what has been typed into it is applied first.
-export async function setValues(changes: { key: string; value: string | number }[]): Promise<boolean> {
-  if (text.value !== theirs.value && !(await apply(text.value))) return false;
-  return post('/api/robot/set', { changes });
+export async function setValues(changes: Change[]): Promise<boolean> {
+  return (await applyTyped()) && post('/api/robot/set', { changes });
+}
+
+/// Replaces the text in the editor by `next`, with these values in it, as one change.
+export async function changeText(next: string, changes: Change[]): Promise<boolean> {
+  applied = text.value; // it is part of `next`
+  const done = await post('/api/robot/set', { text: next, changes });
+  if (!done) applied = null;
+  return done;
 }
 
 function change(material: string, key: string, value: string | number, label: string): Promise<boolean> {
@@ -131,7 +154,7 @@ export function Materials() {
             <span>Poisson ratio</span>
             <NumberField
               value={+m.poisson_ratio.toPrecision(6)}
-              range={{ from: 0, to: 0.4999 }}
+              range={{ from: -1, to: 0.5, open: true }}
               unit=""
               step={0.01}
               testId={`poisson-${m.name}`}
@@ -164,13 +187,23 @@ effect(() => {
 
 export const autosave = signal(localStorage.getItem('pliant_autosave') === 'on');
 autosave.subscribe((on) => localStorage.setItem('pliant_autosave', on ? 'on' : 'off'));
+let digest = ''; // of the text that is known last
+let builtBefore = -1; // revision of the robot that was shown when it came
+/// A text is saved once it has been built: until then nobody knows whether it has errors.
 effect(() => {
   const d = documentState.value;
-  if (autosave.value && d.unsaved && d.name && mayDrive.value && problems.value.length === 0 && !building.value) void saveRobot();
+  const revision = scene.value?.head.revision ?? -1;
+  if (d.digest !== digest) {
+    digest = d.digest;
+    builtBefore = revision;
+  }
+  const isBuilt = revision > builtBefore && problems.value.length === 0 && !building.value;
+  if (autosave.value && d.unsaved && d.name && mayDrive.value && isBuilt) void saveRobot();
 });
 
 export function Editor() {
-  const [saveAs, setSaveAs] = useState('');
+  /// The name in the form; null: there is no form.
+  const [saveAs, setSaveAs] = useState<string | null>(null);
   const d = documentState.value;
   const changed = text.value !== theirs.value;
   const save = () => (d.name ? saveRobot() : setSaveAs(`${(scene.value?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`));
@@ -202,17 +235,19 @@ export function Editor() {
           <Icon name="save" />
         </button>
       </div>
-      {saveAs && (
+      {saveAs !== null && (
         <form
           class="saveas"
           onSubmit={async (e) => {
             e.preventDefault();
-            if (await saveRobot(saveAs)) setSaveAs('');
+            if (await saveRobot(saveAs)) setSaveAs(null);
           }}
         >
-          <input value={saveAs} aria-label="File name" onInput={(e) => setSaveAs(e.currentTarget.value)} />
-          <button class="primary small">Save</button>
-          <button class="small" type="button" onClick={() => setSaveAs('')}>
+          <input value={saveAs} aria-label="File name" onInput={(e) => setSaveAs(e.currentTarget.value)} data-testid="save-name" />
+          <button class="primary small" disabled={!saveAs.trim()}>
+            Save
+          </button>
+          <button class="small" type="button" onClick={() => setSaveAs(null)}>
             Cancel
           </button>
         </form>

@@ -6,7 +6,7 @@ import { unlessLost } from '../discard';
 import { useDialog } from '../dismiss';
 import { api, documentState, mayDrive, page, post, say, scene } from '../store';
 import { freeName, library } from './build';
-import { theirs } from './editor';
+import { applyTyped, theirs } from './editor';
 
 /// Contents of a file, as read by the studio.
 export interface Content {
@@ -181,6 +181,7 @@ function Ready({ content, close }: { content: Content; close: () => void }) {
     close();
     const robotUnit = scene.peek()?.head.unit_mm ?? 1;
     const bodies = bodiesOf(content, `${upwards()}${content.name}`, material, (scene.peek()?.head.bodies ?? []).map((b) => b.name), says ? 1 : round(units[unit] / robotUnit, 9));
+    if (!(await applyTyped())) return;
     for (const entry of bodies) if (!(await post('/api/robot/add', { list: 'body', entry }))) return;
   };
   return (

@@ -4,7 +4,7 @@ import { NumberField } from '../number_field';
 import { api, frame, mayDrive, say, scene } from '../store';
 import { driveTo, units } from './actuators';
 import { text } from './editor';
-import { insertKeys, programKeys } from './recorder';
+import { insertKeys } from './recorder';
 import { begin, resultOf, Search, searching, type WaypointFound } from './search';
 
 type Point = [number, number, number];
@@ -212,12 +212,9 @@ function Found() {
           disabled={!mayDrive.value}
           data-testid="goal-program"
           onClick={() => {
-            const kinds = Object.fromEntries((scene.value?.head.actuators ?? []).map((a) => [a.name, a.kind]));
-            const keys = waypoints.map((at, k) => ({
-              time: k + 1,
-              values: Object.fromEntries(Object.entries(at.inputs).map(([name, value]) => [name, { kind: kinds[name], value }])),
-            }));
-            insertKeys(text.value, programKeys(keys));
+            const { keys, changes, error } = last.program ?? {};
+            if (keys && changes) void insertKeys(text.value, keys, changes);
+            else say(error ?? 'There is no program for this.');
           }}
         >
           Use as program

@@ -4,7 +4,7 @@ import { counted } from '../counted';
 import { enlarged } from '../print/enlarged';
 import { api, mayDrive, say, scene } from '../store';
 import { pinNow, setValues } from './editor';
-import { begin, type IdentifyFound, resultNumber, resultOf, Search } from './search';
+import { begin, type IdentifyFound, isOfBefore, resultNumber, resultOf, Search } from './search';
 import { changeOf } from './toml_edit';
 import { judgeRows } from './tracks';
 
@@ -52,24 +52,33 @@ function Unknowns() {
   );
 }
 
+/// The field is emptied: a file that is chosen again has been edited.
+async function takeMeasured(field: HTMLInputElement) {
+  const file = field.files?.[0];
+  if (!file) return;
+  const csv = await file.text();
+  field.value = '';
+  table.value = { name: file.name, csv };
+}
+
 function Table() {
   const head = scene.value!.head;
   const held = table.value ? judgeRows(table.value.csv) : 0;
   const columns = [...head.markers.flatMap((m) => [`${m.name}_x_mm`, `${m.name}_z_mm`]), ...head.actuators.map((a) => (a.type === 'cable' ? `${a.name}_tension_N` : `${a.name}_pressure_kPa`))];
   return (
     <>
-      <label class="row">
-        Measurements
-        <input
-          type="file"
-          accept=".csv,text/csv"
-          data-testid="measured"
-          onChange={async (e) => {
-            const file = e.currentTarget.files?.[0];
-            table.value = file ? { name: file.name, csv: await file.text() } : null;
-          }}
-        />
-      </label>
+      <div class="row">
+        <span>Measurements</span>
+        <span class="row">
+          <span class="given quiet" data-testid="measured-name">
+            {table.value?.name ?? 'none'}
+          </span>
+          <label class="button small">
+            Choose a CSV…
+            <input class="unseen" type="file" accept=".csv,text/csv" data-testid="measured" onChange={(e) => void takeMeasured(e.currentTarget)} />
+          </label>
+        </span>
+      </div>
       <p class="quiet small-print">
         CSV with one row per instant: a column time or step, and any of {columns.slice(0, 4).join(', ')}
         {columns.length > 4 && ', …'}, as in the exported histories.
@@ -123,6 +132,7 @@ function Found() {
   const found = last.found as IdentifyFound;
   return (
     <div data-testid="identify-found">
+      {isOfBefore(last) && <p class="quiet">The robot has been changed since these values were found.</p>}
       <table class="readings">
         <thead>
           <tr>

@@ -37,10 +37,11 @@ function Settings({ f }: { f: (typeof look.fieldNames)[number] }) {
     look.fixedRange.value = { field: f.name, low: l, high: h };
     return true;
   };
-  const field = (label: string, id: string, value: number, take: (v: number) => boolean) => (
+  const shown = (v: number) => +v.toPrecision(5);
+  const field = (label: string, id: string, value: number, range: { from: number; to: number }, take: (v: number) => boolean) => (
     <label class="row">
       {label}
-      <NumberField value={+value.toPrecision(5)} range={{ from: -Infinity, to: Infinity }} unit={f.unit} testId={id} onValue={take} />
+      <NumberField value={shown(value)} range={{ ...range, open: true }} unit={f.unit} testId={id} onValue={take} />
     </label>
   );
   return (
@@ -66,8 +67,8 @@ function Settings({ f }: { f: (typeof look.fieldNames)[number] }) {
           ))}
         </select>
       </label>
-      {field('Maximum', 'range-high', high, (v) => set(low, v))}
-      {field('Minimum', 'range-low', low, (v) => set(v, high))}
+      {field('Maximum', 'range-high', high, { from: shown(low), to: Infinity }, (v) => set(low, v))}
+      {field('Minimum', 'range-low', low, { from: -Infinity, to: shown(high) }, (v) => set(v, high))}
       <button class="small" disabled={!fixed} onClick={() => (look.fixedRange.value = null)} data-testid="range-auto">
         Fit range to data
       </button>

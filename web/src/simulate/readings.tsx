@@ -26,7 +26,7 @@ export function Readings() {
         ))}
         {look.pinned.value?.frame.head.markers.map((p, k) => (
           <tr class="pinned-row" key={`pin${k}`}>
-            <th>{head.markers[k]?.name} pinned</th>
+            <th>{look.pinned.value!.markers[k]} pinned</th>
             {p.map((v) => (
               <td>{v.toFixed(2)}</td>
             ))}

@@ -1,8 +1,8 @@
 // Records the user's actions as a program: [[program.key]] of a robot file.
-import { signal } from '@preact/signals';
+import { effect, signal } from '@preact/signals';
 import { scene } from '../store';
 import { reading } from './actuators';
-import { apply } from './editor';
+import { type Change, changeText } from './editor';
 import { replaceEntries } from './toml_edit';
 
 export interface Key {
@@ -36,6 +36,15 @@ export function stopRecording() {
   recording.value = false;
 }
 
+let robot = -1; // what the recording is of
+effect(() => {
+  const opened = scene.value?.head.opened;
+  if (opened === undefined || opened === robot) return;
+  robot = opened;
+  stopRecording();
+  recorded.value = [];
+});
+
 /// True if all keys between two lie on the straight line from one to the other, to a thousandth.
 function isStraight(keys: Key[], from: number, to: number, names: string[]): boolean {
   const a = keys[from];
@@ -63,7 +72,7 @@ function corners(keys: Key[], names: string[]): Key[] {
 }
 
 /// A [[program.key]] for each, with the values that drive the actuators.
-export function programKeys(keys: Key[]): string {
+function programKeys(keys: Key[]): string {
   const bare = (n: string) => (/^[A-Za-z0-9_-]+$/.test(n) ? n : JSON.stringify(n));
   const text = ({ kind, value }: { kind: string; value: number }) => {
     const u = unit[kind];
@@ -74,17 +83,27 @@ export function programKeys(keys: Key[]): string {
     .join('\n\n');
 }
 
-/// Puts these in the place of the keys of the file.
-export function insertKeys(file: string, keys: string): Promise<boolean> {
-  return apply(replaceEntries(file, 'program.key', keys));
+/// Puts these in the place of the keys of the file, and other values with them.
+export function insertKeys(file: string, keys: string, changes: Change[]): Promise<boolean> {
+  return changeText(replaceEntries(file, 'program.key', keys.trim()), changes);
+}
+
+/// A program ends with its last key: the file may have a duration that is shorter.
+export function endOf(keys: string): Change[] {
+  const time = [...keys.matchAll(/^time = "([^"]+)"$/gm)].at(-1)?.[1];
+  return time ? [{ key: 'program.duration', value: time }] : [];
 }
 
 /// Uses for each actuator only the kind that drove it last, and drops collinear keys.
 export function asProgram(): string {
   const keys = recorded.value;
-  const names = scene.peek()?.head.actuators.map((a) => a.name) ?? [];
   if (keys.length < 2) return '';
-  const kinds = Object.fromEntries(names.map((n) => [n, keys[keys.length - 1].values[n]?.kind]));
-  const usable = keys.filter((k) => names.every((n) => k.values[n]?.kind === kinds[n]));
+  // Some may be new in the file, or have other names by now.
+  const names = (scene.peek()?.head.actuators ?? []).map((a) => a.name).filter((n) => keys.every((k) => n in k.values));
+  if (names.length === 0) return '';
+  const kinds = Object.fromEntries(names.map((n) => [n, keys[keys.length - 1].values[n].kind]));
+  const usable = keys
+    .filter((k) => names.every((n) => k.values[n].kind === kinds[n]))
+    .map((k) => ({ time: k.time, values: Object.fromEntries(names.map((n) => [n, k.values[n]])) }));
   return programKeys(corners(usable, names).filter((k) => k.time > 0));
 }

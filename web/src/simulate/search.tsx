@@ -1,6 +1,7 @@
 // A search that runs in the studio: its progress, end and result. One at a time, for all pages.
 import { effect, signal } from '@preact/signals';
-import { api, lines, onEvent, post, say } from '../store';
+import { api, lines, onEvent, post, say, scene } from '../store';
+import type { Change } from './editor';
 
 export type Kind = 'goal' | 'identify' | 'workspace' | 'sweep' | 'motion';
 
@@ -23,17 +24,30 @@ export interface IdentifyFound {
   converged: boolean;
 }
 
+/// The waypoints of a goal as a program: its keys, and what else the file must say; or why there is none.
+export interface GoalProgram {
+  keys?: string;
+  changes?: Change[];
+  error?: string;
+}
+
 interface Result {
   kind?: Kind;
   revision?: number; // of the robot that was searched
+  opened?: number; // its number
   found?: unknown;
+  program?: GoalProgram;
 }
 
 export const searching = signal<{ kind: Kind; stage: string; fraction: number } | null>(null);
 export const refused = signal<{ kind: Kind; why: string } | null>(null);
 export const result = signal<Result>({});
-/// The last result, if it is of this kind and no later search of the kind was refused or has failed.
-export const resultOf = (kind: Kind): Result | null => (result.value.kind === kind && refused.value?.kind !== kind ? result.value : null);
+/// The last result, if it is of this kind and of the robot that is open, and no later search of the kind was refused or
+/// has failed.
+export const resultOf = (kind: Kind): Result | null =>
+  result.value.kind === kind && result.value.opened === scene.value?.head.opened && refused.value?.kind !== kind ? result.value : null;
+/// The robot was changed after this search.
+export const isOfBefore = (last: Result) => last.revision !== scene.value?.head.revision;
 /// Counts results, so that pictures of different results have different addresses.
 export const resultNumber = signal(0);
 

@@ -3,12 +3,12 @@
 import { effect, signal } from '@preact/signals';
 import { counted } from '../counted';
 import { NumberField } from '../number_field';
-import { api, mayDrive, post, scene } from '../store';
+import { api, mayDrive, scene } from '../store';
 import { fieldColour, gradientCss } from './colormap';
-import { theirs } from './editor';
+import { setValues, theirs } from './editor';
 import { columnOf, evenly, extent, quantity, sweepCsv, ticks, type SweepFound } from './response';
 import { saveBlob } from './save';
-import { begin, result, Search } from './search';
+import { begin, isOfBefore, resultOf, Search } from './search';
 import { keyOf, parametersOf } from './toml_edit';
 import { freeRunName, runs } from './tracks';
 import * as look from './view_state';
@@ -57,6 +57,10 @@ async function learn() {
     if (q && !list.some((k) => k.key === one.key)) list.push({ key: one.key, ...q });
   }
   known.value = list;
+  // Another robot may have no such key.
+  const kept = (axis: Axis) => axis.other || axis.key === '' || list.some((k) => k.key === axis.key);
+  const [first, second] = axes.peek();
+  if (!kept(first) || (second && !kept(second))) axes.value = [kept(first) ? first : none, second && kept(second) ? second : null];
 }
 effect(() => {
   theirs.value; // parameters are part of the text
@@ -220,7 +224,7 @@ function Chosen({ found }: { found: SweepFound }) {
         {found.axes.map((a, k) => `${shortKey(a).split(',')[0]} ${show(run.inputs[k])}${a.unit && ` ${a.unit}`}`).join(', ')}
         {run.why && <span class="limit"> {run.why}</span>}
       </p>
-      <button class="small" disabled={!mayDrive.value} data-testid="sweep-use" onClick={() => void post('/api/robot/set', { changes: found.axes.map((a, k) => assignment(a, run.inputs[k])) })}>
+      <button class="small" disabled={!mayDrive.value} data-testid="sweep-use" onClick={() => void setValues(found.axes.map((a, k) => assignment(a, run.inputs[k])))}>
         Use these values
       </button>
     </div>
@@ -235,9 +239,9 @@ function overlay(found: SweepFound) {
 }
 
 function Found() {
-  const { kind, found: any, revision } = result.value;
-  if (kind !== 'sweep') return null;
-  const found = any as SweepFound;
+  const last = resultOf('sweep');
+  if (!last) return null;
+  const found = last.found as SweepFound;
   const at = Math.max(found.columns.findIndex((c) => c.key === column.value), 0);
   const values = columnOf(found, at);
   const of = found.columns[at];
@@ -246,7 +250,7 @@ function Found() {
   const [low, high] = extent(values);
   return (
     <div class="search" data-testid="sweep-found">
-      {revision !== scene.value?.head.revision && <p class="quiet">The robot has been changed since this sweep.</p>}
+      {isOfBefore(last) && <p class="quiet">The robot has been changed since this sweep.</p>}
       <label class="row">
         Result
         <select value={of.key} onChange={(e) => (column.value = e.currentTarget.value)} data-testid="sweep-result">
@@ -269,7 +273,7 @@ function Found() {
           </div>
         )}
       </figure>
-      {failed > 0 && <p class="limit">{failed} of {counted(found.runs.length, 'run')} found no equilibrium, marked ×.</p>}
+      {failed > 0 && <p class="limit">{failed} of {counted(found.runs.length, 'run')} {failed === 1 ? 'has' : 'have'} no result, marked ×: choose one to see why.</p>}
       <Chosen found={found} />
       <div class="row left wrap">
         <button class="small" onClick={() => saveBlob(new Blob([sweepCsv(found)], { type: 'text/csv' }), 'sweep.csv')} data-testid="sweep-csv">CSV</button>

@@ -9,6 +9,7 @@ import {
   mayDrive,
   online,
   restValue,
+  say,
   scene,
   send,
   sendInput,
@@ -19,7 +20,7 @@ import {
 import { text, theirs } from './editor';
 import { motion, MotionNotes, MotionTrack, RunMotion } from './motion';
 import { panel } from './panel';
-import { asProgram, insertKeys, recorded, recording, startRecording, stopRecording } from './recorder';
+import { asProgram, endOf, insertKeys, recorded, recording, startRecording, stopRecording } from './recorder';
 import { hasProgramKeys } from './toml_edit';
 import { clearTracks, frames, tracksVersion } from './tracks';
 import * as look from './view_state';
@@ -89,9 +90,9 @@ export function Timeline() {
       {program && (
         <button class="small" onClick={() => {
           const keys = asProgram();
-          if (!keys) return;
+          if (!keys) return say('The recording has nothing of the actuators that the robot has now.');
           panel.value = 'file';
-          void insertKeys(text.value, keys).then((done) => done && (recorded.value = []));
+          void insertKeys(text.value, keys, endOf(keys)).then((done) => done && (recorded.value = []));
         }}>
           Insert {counted(recorded.value.length, 'sample')} as program
         </button>

@@ -37,6 +37,8 @@ export interface Pinned {
   label: string;
   positions: Float32Array;
   frame: Frame;
+  markers: string[]; // their names: the file may have others by now
+  opened: number; // the robot that it is of
 }
 export const pinned = signal<Pinned | null>(null);
 export const beside = signal(false);
