@@ -8,6 +8,7 @@
 #include "base/core/toml_edit.hpp"
 #include "robot/file/material_library.hpp"
 #include "studio/base/dumped.hpp"
+#include "studio/server/based_text.hpp"
 #include "studio/server/json_toml.hpp"
 #include "studio/server/request_reading.hpp"
 #include "studio/server/studio.hpp"
@@ -29,7 +30,7 @@ Response set_values(Studio& studio, const Request& request) {
     return done(studio.edit_by([&](const std::string& text) {
         Result<std::string> next = json.contains("text") ? json["text"].get<std::string>() : text;
         for (const Json& change : json["changes"]) {
-            next = config::with_value(*next, change["key"].get<std::string>(), toml_text(change["value"]));
+            next = with_robot_value(*next, change["key"].get<std::string>(), toml_text(change["value"]));
             if (!next) break;
         }
         return next;
@@ -46,7 +47,7 @@ Response add_entry(Studio& studio, const Request& request) {
     config::EntryText entry;
     for (const auto& [key, value] : json["entry"].items()) entry.emplace_back(key, toml_text(Json(value)));
     return done(studio.edit_by(
-        [&](const std::string& text) { return config::with_entry(text, json["list"].get<std::string>(), entry); }));
+        [&](const std::string& text) { return with_robot_entry(text, json["list"].get<std::string>(), entry); }));
 }
 
 Response open_new(Studio& studio, const Request& request) {

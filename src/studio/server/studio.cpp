@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -39,6 +41,30 @@ std::string comparison_event(const std::string& title) {
 
 tl::unexpected<Error> not_a_robot(const std::string& name) {
     return input_error("\"{}\": a robot file ends with .toml", name);
+}
+
+/// Lines end with LF, as the page's editor ends them.
+std::string with_short_ends(const std::string& text) {
+    std::string out;
+    out.reserve(text.size());
+    for (std::size_t k = 0; k < text.size(); ++k)
+        if (text[k] != '\r' || k + 1 == text.size() || text[k + 1] != '\n') out += text[k];
+    return out;
+}
+
+std::string with_windows_ends(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '\n') out += '\r';
+        out += c;
+    }
+    return out;
+}
+
+/// Most of its lines end with CR LF.
+bool has_windows_ends(const std::string& text) {
+    const auto all = std::ranges::count(text, '\n');
+    return all < 2 * (std::ssize(text) - std::ssize(with_short_ends(text)));
 }
 
 /// Refuses a printer file, which is opened elsewhere.
@@ -96,7 +122,9 @@ Status Studio::start(const std::filesystem::path& file) {
     if (!text) return tl::unexpected(text.error());
     if (Status status = check_kind(*text, file); !status) return status;
     const std::string name = file.filename().string();
-    document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::automatic, {}};
+    const std::string edited = with_short_ends(*text);
+    document_ = {name, folder_.path() / name, edited, edited, {}, {}, Accuracy::automatic, {}};
+    document_.windows_lines = has_windows_ends(*text);
     // Files named by the user's own file are allowed wherever they are.
     document_.outside = folder_.texts_leading_outside(*text, document_.file);
     rebuild(After::from_rest);
@@ -140,7 +168,7 @@ Status Studio::check_text(const std::string& text) const {
 
 Status Studio::edit(const std::string& text) {
     const std::lock_guard lock(mutex_);
-    return replace(text);
+    return replace(with_short_ends(text));
 }
 
 Status Studio::edit_by(const std::function<Result<std::string>(const std::string&)>& change) {
@@ -205,7 +233,7 @@ Result<Studio::Saved> Studio::save(const std::string& name, bool overwrite) {
     if (!is_its_own && exists) return input_error("\"{}\" exists; choose another name", name);
     if (is_its_own && exists && !overwrite) {
         const Result<std::string> there = read_file(*path, largest_robot);
-        if (!there || *there != document_.saved) return Saved::changed_elsewhere;
+        if (!there || with_short_ends(*there) != document_.saved) return Saved::changed_elsewhere;
     }
     // In another folder the same names are those of other files.
     std::vector<std::string> outside = document_.outside;
@@ -218,7 +246,8 @@ Result<Studio::Saved> Studio::save(const std::string& name, bool overwrite) {
     if (moves && robot::parse_robot(document_.text, document_.file)) {
         if (const auto there = robot::parse_robot(document_.text, *path); !there) return tl::unexpected(there.error());
     }
-    if (Status status = write_file(*path, document_.text); !status) return tl::unexpected(status.error());
+    const std::string bytes = document_.windows_lines ? with_windows_ends(document_.text) : document_.text;
+    if (Status status = write_file(*path, bytes); !status) return tl::unexpected(status.error());
     document_.name = path->lexically_relative(folder_.path()).generic_string();
     document_.file = *path;
     document_.saved = document_.text;
@@ -237,9 +266,11 @@ Status Studio::open_file(const std::string& name) {
     if (!text) return tl::unexpected(text.error());
     if (Status status = check_kind(*text, *path); !status) return status;
     const std::lock_guard lock(mutex_);
-    Document opened{name, *path, *text, *text, {}, {}, document_.accuracy, {}};
+    const std::string edited = with_short_ends(*text);
+    Document opened{name, *path, edited, edited, {}, {}, document_.accuracy, {}};
+    opened.windows_lines = has_windows_ends(*text);
     std::swap(document_, opened);
-    if (Status status = check_text(*text); !status) {
+    if (Status status = check_text(edited); !status) {
         std::swap(document_, opened);
         return status;
     }
@@ -261,7 +292,8 @@ Status Studio::open_new(const std::string& text, const std::string& name) {
     if (!place) return tl::unexpected(place.error());
     if (lower_extension(*place) != ".toml") return not_a_robot(name);
     const std::lock_guard lock(mutex_);
-    Document fresh{"", *place, text, "", {}, {}, document_.accuracy, {}};
+    Document fresh{"", *place, with_short_ends(text), "", {}, {}, document_.accuracy, {}};
+    fresh.windows_lines = has_windows_ends(text);
     if (!name.empty()) fresh.title = name;
     std::swap(document_, fresh);
     if (Status status = check_text(text); !status) {

@@ -78,6 +78,7 @@ public:
         std::string title = "new";           ///< what pages call it while it has no name
         int opened = 0;                      ///< number of the documents opened so far
         std::string stamps{};                ///< ProjectFolder::stamps_of() it when it was built last
+        bool windows_lines = false;          ///< lines of its file end with CR LF; here they always end with LF
 
         /// SHA-256 of the text, and of the stamps if it names files.
         [[nodiscard]] std::string digest() const;

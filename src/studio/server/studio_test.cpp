@@ -190,6 +190,57 @@ TEST_CASE("a new robot is never saved over a file that was not opened") {
     CHECK(save_as("gripper.toml").status == 200);
 }
 
+TEST_CASE("a file whose lines end with CR LF is edited with LF, and saved with its own ends") {
+    const Project project;
+    const fs::path file = project.base / "project" / "windows.toml";
+    std::string text = project_bar;
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, "\r");
+    REQUIRE(write_file(file, text));
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
+    REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"windows.toml"})", "first_page").status == 200);
+    CHECK(studio.document().text == project_bar);
+    CHECK(studio.document().text == studio.document().saved);
+    REQUIRE(ask(studio, "POST", "/api/robot/set", R"({"changes":[{"key":"mesh.size","value":"7 mm"}]})", "first_page")
+                .status == 200);
+    REQUIRE(ask(studio, "POST", "/api/robot/save", R"({"name":""})", "first_page").status == 200);
+    const std::string saved = read_file(file).value();
+    CHECK(std::ranges::count(saved, '\n') == std::ranges::count(text, '\n'));
+    CHECK(std::ranges::count(saved, '\r') == std::ranges::count(text, '\n'));
+    CHECK(holds(saved, "7 mm"));
+}
+
+TEST_CASE("in a file that stands on another one, values go into its list of changes, and nothing is added") {
+    const Project project;
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
+    const auto post = [&](const std::string& path, const std::string& body) {
+        return ask(studio, "POST", path, body, "first_page");
+    };
+    REQUIRE(post("/api/robot/new", "# mine\nrobot = \"bar.toml\"\nset = [\"mesh.order=1\", 'mesh.size=\"8 mm\"']\n")
+                .status == 200);
+    const auto set = [&](const std::string& key, const std::string& value) {
+        const Json change = {{"key", key}, {"value", value}};
+        return post("/api/robot/set", Json({{"changes", {change}}}).dump()).status;
+    };
+    CHECK(set("mesh.size", "7 mm") == 200);
+    CHECK(set("material.soft.youngs_modulus", "2 MPa") == 200);
+    CHECK(set("program.duration", "2 s") == 200);
+    const std::string text = studio.document().text;
+    CHECK(text.starts_with("# mine\nrobot = \"bar.toml\"\n"));
+    const auto robot = robot::parse_robot(text, studio.document().file);
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->program.duration == 2);
+    CHECK(robot->materials[0].youngs_modulus_Pa == 2e6);
+    CHECK_FALSE(holds(text, "8 mm"));
+    const Response added = post("/api/robot/add", R"({"list":"marker","entry":{"name":"m","point":[1,2,3]}})");
+    CHECK(added.status == 422);
+    CHECK(holds(added.body, "this file only changes bar.toml: open that file to add a marker"));
+    CHECK(studio.document().text == text);
+}
+
 TEST_CASE("a robot is not saved where the files that it names are not found") {
     const Project project;
     const auto owner = built(project);
