@@ -123,7 +123,6 @@ TEST_CASE("errors in measurements name file and line") {
     check_problem("time,tip_x_mm,tip_x_mm_scatter\n1,59,\n",
                   "m.csv:2: tip_x_mm_scatter is empty, but tip_x_mm has a value; give both or none");
     check_problem("time,tip-middle-tip_angle_deg\n1,59\n", "m.csv:1: the robot has nothing that column");
-    check_problem("time,tip_x_mm,tip_x_mm_scatter\n1,59,\n", "m.csv:2: tip_x_mm_scatter \"\" is not a number");
     check_problem("time,use,tip_x_mm\n1,test,59\n", "m.csv:2: use \"test\" is neither fit nor judge");
     check_problem("time,tip_x_mm\n1,\n", "m.csv: no row has a value");
     check_problem("time,use,tip_x_mm\n1,judge,59\n", "m.csv: all rows are held out, none is left to fit");

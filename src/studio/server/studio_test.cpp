@@ -14,6 +14,7 @@
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
+#include "robot/file/robot_file.hpp"
 #include "studio/files/test_surface.hpp"
 #include "studio/make/make_session.hpp"
 #include "studio/make/test_orders.hpp"
