@@ -319,14 +319,7 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     const fs::path aside = aside_of(*target);
     const Result<FileHandle> mine = open_aside(aside, AsideKind::file, path, 30s);
     if (!mine) return tl::unexpected(mine.error());
-    // Whoever may not read the file that is replaced does not read the new one either, even while it is written.
-    const fs::file_status replaced = fs::status(*target, code);
-    const bool replaces = fs::exists(replaced);
-    const fs::perms mode = replaced.permissions() & fs::perms::all;
-    std::error_code ignored;  // some file systems have no modes
-    if (replaces) fs::permissions(aside, mode | fs::perms::owner_read | fs::perms::owner_write, ignored);
     Status status = write_through(aside, bytes, path);
-    if (status && replaces) fs::permissions(aside, mode, ignored);
     if (status) {
         fs::rename(aside, *target, code);
         if (code) status = failure_at(path.string(), "cannot be written: {}", code.message());

@@ -101,18 +101,6 @@ TEST_CASE("a current folder that was deleted is named") {
     CHECK(elsewhere);
 }
 
-TEST_CASE("a file that is replaced keeps its mode") {
-    const test::Folder scratch("files");
-    for (const unsigned mode : {0600U, 0664U, 0444U}) {
-        const auto wanted = static_cast<fs::perms>(mode);
-        REQUIRE(write_file(scratch / "mine.txt", "old"));
-        fs::permissions(scratch / "mine.txt", wanted);
-        REQUIRE(write_file(scratch / "mine.txt", "new"));
-        CHECK(*read_file(scratch / "mine.txt") == "new");
-        CHECK(fs::status(scratch / "mine.txt").permissions() == wanted);
-    }
-}
-
 TEST_CASE("a symbolic link keeps pointing to the file that is written; devices and pipes are not replaced") {
     const test::Folder scratch("files");
     REQUIRE(write_file(scratch / "real.txt", "old"));
