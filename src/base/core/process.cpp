@@ -93,8 +93,14 @@ bool was_killed(const ProcessEnd& end) {
     return WIFSIGNALED(end.status) && WTERMSIG(end.status) == SIGKILL;
 }
 
+ChildProcess::ChildProcess(pid_t process) : process_(process), parent_(::getpid()) {}
+
+bool ChildProcess::is_ours() const {
+    return ::getpid() == parent_;
+}
+
 ProcessEnd ChildProcess::end() {
-    if (process_ < 0) return end_;
+    if (process_ < 0 || !is_ours()) return end_;
     ::kill(process_, SIGKILL);
     rusage usage{};
     while (::wait4(process_, &end_.status, 0, &usage) < 0 && errno == EINTR) {
@@ -109,7 +115,7 @@ ProcessEnd ChildProcess::end() {
 
 ProcessEnd ChildProcess::let_end() {
     constexpr int looks = 100, pause_us = 10000;
-    for (int look = 0; process_ >= 0 && look < looks; ++look) {
+    for (int look = 0; process_ >= 0 && is_ours() && look < looks; ++look) {
         siginfo_t info{};
         if (::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0)
             break;

@@ -40,10 +40,11 @@ struct ProcessEnd {
 /// By a signal that it cannot catch, as the system does when memory is short.
 [[nodiscard]] bool was_killed(const ProcessEnd& end);
 
-/// A process from start_process(), killed with its owner.
+/// A process from start_process(), killed with its owner. In a copy of this program that fork() made it is nobody's
+/// child: there it is left alone.
 class ChildProcess {
 public:
-    explicit ChildProcess(pid_t process) : process_(process) {}
+    explicit ChildProcess(pid_t process);
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
     ~ChildProcess() { (void)end(); }
@@ -52,9 +53,12 @@ public:
     ProcessEnd end();
     /// Gives it a second to exit by itself, for processes that were asked to or that have closed their pipe.
     ProcessEnd let_end();
+    /// Started by this process, not by one that it was forked from.
+    [[nodiscard]] bool is_ours() const;
 
 private:
     pid_t process_;  ///< -1 once it has ended
+    pid_t parent_;
     ProcessEnd end_;
 };
 

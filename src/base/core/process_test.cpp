@@ -109,6 +109,28 @@ TEST_CASE("a child process is killed with its owner, or ends by itself within a 
     CHECK(end_text(slow.end()) == "signal 9: Killed");
 }
 
+TEST_CASE("a forked program leaves the child processes of the one before it alone") {
+    const Result<pid_t> sleeper = start_process("/bin/sh", {"-c", "exec sleep 60"}, {});
+    REQUIRE(sleeper);
+    ChildProcess child(*sleeper);
+    const pid_t fork = ::fork();
+    REQUIRE(fork >= 0);
+    if (fork == 0) {
+        const bool is_ours = child.is_ours();
+        (void)child.let_end();
+        (void)child.end();
+        ::_exit(is_ours ? 1 : 0);
+    }
+    int status = -1;
+    REQUIRE(::waitpid(fork, &status, 0) == fork);
+    CHECK(status == 0);
+    CHECK(child.is_ours());
+    siginfo_t info{};
+    REQUIRE(::waitid(P_PID, static_cast<id_t>(*sleeper), &info, WEXITED | WNOHANG | WNOWAIT) == 0);
+    CHECK(info.si_pid == 0);  // it has not ended
+    CHECK(end_text(child.end()) == "signal 9: Killed");
+}
+
 TEST_CASE("texts in shell quotes come back from a shell as they were") {
     const std::string text = "it's $HOME `x` \"y\" \\";
     CHECK(run("printf %s " + in_shell_quotes(text)).said == text);

@@ -79,6 +79,8 @@ class IdleWorkers {
 public:
     std::unique_ptr<Worker> take() {
         const std::lock_guard lock(mutex_);
+        // A program that was forked has copies of the pipes of the one before it, which still uses them.
+        std::erase_if(idle_, [](const auto& worker) { return !worker->process().is_ours(); });
         if (idle_.empty()) return nullptr;
         std::unique_ptr<Worker> worker = std::move(idle_.back());
         idle_.pop_back();

@@ -35,8 +35,8 @@ struct MesherLimits {
 [[nodiscard]] std::filesystem::path mesher_on(std::string_view search_path);
 
 /// Sends a request to a worker process, which is kept for the next one. Thread-safe; concurrent requests use separate
-/// processes. Errors: those of the mesher; `crash` and the reason, if its process dies; timeout; cancellation, which
-/// kills the process.
+/// processes, and so do a program and its forks. Errors: those of the mesher; `crash` and the reason, if its process
+/// dies; timeout; cancellation, which kills the process.
 [[nodiscard]] Result<std::string> ask_mesher(MessageKind kind, const std::string& request, const std::string& crash,
                                              Progress& progress);
 

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -85,6 +86,31 @@ TEST_CASE("simultaneous requests have separate processes and get the same answer
         REQUIRE(result->has_value());
         CHECK((*result)->points == expected->points);
     }
+}
+
+TEST_CASE("a forked program starts a process of its own, and leaves its parent's alone") {
+    kill_all();
+    Progress silent;
+    const Result<TetMesh> coarse = mesh_cube(5, silent);
+    REQUIRE(coarse);
+    const std::vector<pid_t> before = meshers();
+    REQUIRE(before.size() == 1);
+    const pid_t fork = ::fork();
+    REQUIRE(fork >= 0);
+    if (fork == 0) {
+        const Result<TetMesh> mesh = mesh_cube(5, silent);
+        const bool good = mesh && mesh->points == coarse->points && meshers().size() == 1;
+        kill_all();
+        ::_exit(good ? 0 : 1);
+    }
+    int status = -1;
+    REQUIRE(::waitpid(fork, &status, 0) == fork);
+    CHECK(status == 0);
+    CHECK(meshers() == before);
+    const Result<TetMesh> after = mesh_cube(5, silent);
+    REQUIRE(after);
+    CHECK(after->points == coarse->points);
+    CHECK(meshers() == before);
 }
 
 TEST_CASE("a mesher that is killed at work gives one error, and the next request is served") {
