@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <system_error>
 #include <thread>
 
@@ -190,6 +191,14 @@ bool is_regular(const FileHandle& open) {
     return ::fstat(open.number(), &what) == 0 && S_ISREG(what.st_mode);
 }
 
+/// Who may do what with a file; nothing: it is not there, or the system does not tell.
+std::optional<mode_t> mode_of(const fs::path& file) {
+    constexpr mode_t rights = 0777;  // whose it is may change, so not those to run as its owner
+    struct stat what {};
+    if (::stat(file.c_str(), &what) != 0) return std::nullopt;
+    return what.st_mode & rights;
+}
+
 FileHandle opened(const fs::path& path, AsideKind kind) {
     constexpr mode_t usual = 0666;
     if (kind == AsideKind::file) return FileHandle(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, usual));
@@ -319,10 +328,15 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     const fs::path aside = aside_of(*target);
     const Result<FileHandle> mine = open_aside(aside, AsideKind::file, path, 30s);
     if (!mine) return tl::unexpected(mine.error());
+    // Nobody who may not read the file that it replaces gets to read this one, not even while it is written.
+    const std::optional<mode_t> mode = mode_of(*target);
+    if (mode) (void)::fchmod(mine->number(), *mode | S_IRUSR | S_IWUSR);
     Status status = write_through(aside, bytes, path);
     if (status) {
         fs::rename(aside, *target, code);
         if (code) status = failure_at(path.string(), "cannot be written: {}", code.message());
+        // Only now: a file that may not be written would be in the way of the next one, if this process were killed.
+        if (!code && mode) (void)::fchmod(mine->number(), *mode);
     }
     if (!status) fs::remove(aside, code);
     return status;

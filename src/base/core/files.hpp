@@ -56,8 +56,8 @@ enum class AsideKind { file, folder };
 [[nodiscard]] Result<FileHandle> open_aside(const std::filesystem::path& aside, AsideKind kind,
                                             const std::filesystem::path& target, std::chrono::milliseconds patience);
 
-/// Writes `PATH.partial`, then renames it to the file that is replaced. Devices, pipes and the names of open files
-/// (/dev/stdout, /proc/self/fd) are written to directly.
+/// Writes `PATH.partial`, then renames it to the file that is replaced, whose permissions it gets. Devices, pipes and
+/// the names of open files (/dev/stdout, /proc/self/fd) are written to directly.
 [[nodiscard]] Status write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// True if `folder` does not exist, is empty, or has the mark, so that no foreign folder is ever deleted.

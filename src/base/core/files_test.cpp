@@ -31,6 +31,23 @@ TEST_CASE("a file is written whole and read back") {
     CHECK_FALSE(write_file(scratch / "no" / "folder", bytes));
 }
 
+TEST_CASE("a file that is replaced keeps who may read and write it") {
+    const test::Folder scratch("files");
+    const auto mode_of = [](const fs::path& file) { return static_cast<int>(fs::status(file).permissions()); };
+    const mode_t before = ::umask(022);
+    REQUIRE(write_file(scratch / "new.txt", "1"));
+    CHECK(mode_of(scratch / "new.txt") == 0644);
+    for (const int mode : {0600, 0664, 0755, 0444}) {
+        const fs::path file = scratch / "old.txt";
+        REQUIRE(write_file(file, "old"));
+        REQUIRE(::chmod(file.c_str(), static_cast<mode_t>(mode)) == 0);
+        REQUIRE(write_file(file, "new"));
+        CHECK(*read_file(file) == "new");
+        CHECK(mode_of(file) == mode);
+    }
+    ::umask(before);
+}
+
 TEST_CASE("what one program writes under a temporary name no other gets, until it is done") {
     using namespace std::chrono_literals;
     const test::Folder scratch("files");

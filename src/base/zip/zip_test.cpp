@@ -135,6 +135,16 @@ TEST_CASE("entries are read back as written, stored and deflated, empty and bina
     CHECK(zip->read("none", any_size).error().message == file.path.string() + ": has no entry 'none'");
 }
 
+TEST_CASE("an archive that replaces another has its permissions") {
+    const File file;
+    for (const fs::perms wanted : {fs::perms(0600), fs::perms(0664), fs::perms(0444)}) {
+        REQUIRE(ZipWriter::create(file.path)->close().has_value());
+        fs::permissions(file.path, wanted);
+        REQUIRE(ZipWriter::create(file.path)->close().has_value());
+        CHECK(fs::status(file.path).permissions() == wanted);
+    }
+}
+
 TEST_CASE("an entry may be as large as the limit and no larger; its head is readable anyway") {
     const File file;
     {

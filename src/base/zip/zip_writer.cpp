@@ -172,9 +172,13 @@ Status ZipWriter::close() {
     }
     if (auto status = s.put(directory_end(s.entries.size(), s.offset - begin, begin)); !status) return status;
     if (std::fclose(s.file.release()) != 0) return s.fail();
-    std::error_code code;
+    std::error_code code, ignored;
+    const std::filesystem::file_status replaced = std::filesystem::status(s.target, ignored);
     std::filesystem::rename(s.aside, s.target, code);
     if (code) return failure("{}: cannot be written: {}", s.path.string(), code.message());
+    constexpr auto rights = std::filesystem::perms::all;
+    if (std::filesystem::exists(replaced))
+        std::filesystem::permissions(s.target, replaced.permissions() & rights, ignored);
     s.closed = true;
     return {};
 }
