@@ -34,6 +34,7 @@ Status move_frames(const fs::path& kept, const fs::path& folder, const report::S
     std::error_code code;
     fs::rename(frames, folder / "frames", code);
     if (code) return failure("{}: cannot be moved: {}", frames.string(), code.message());
+    fs::create_directory(frames, code);  // by which the folder is known until it is deleted
     return write_file(folder / "frames.xdmf",
                       sim::distributed::frames_xdmf(s.robot, static_cast<int>(s.mesh.points.size()),
                                                     static_cast<int>(s.mesh.tet_count()), s.mesh.order, times));

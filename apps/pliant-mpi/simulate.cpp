@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/core/checkpoint_folder.hpp"
 #include "base/core/digest.hpp"
 #include "base/core/files.hpp"
 #include "base/core/own_core.hpp"
@@ -42,9 +43,10 @@ using sim::distributed::Ranks;
 struct RobotData {
     std::string name;
     mesh::TetMesh mesh;
-    std::vector<std::string> notes;
+    std::vector<std::string> warnings;
     double mesh_s = 0;
     std::optional<sim::ContactRules> contact;
+    std::optional<CheckpointFolder> kept;  ///< with frames and checkpoint; no other job gets it while this one runs
 };
 
 /// Settings that all ranks need before the robot is distributed.
@@ -52,6 +54,8 @@ struct Job {
     sim::Program program;
     std::string origin;  ///< identifies the robot of a checkpoint
 };
+
+constexpr const char* kept_mark = "frames";  // what a folder beside the results is known by
 
 fs::path kept_folder(const Options& options) {
     return beside_folder(options.folder, ".checkpoint");
@@ -88,14 +92,13 @@ Result<sim::Description> read(const Options& options, Job& job, RobotData& data)
     if (!mesh) return tl::unexpected(mesh.error());
     job = {robot->program, digest_of(*text, *base, *files, assignments, *mesh)};
     data.name = robot->name;
-    data.notes = mesh->notes;
     Result<sim::Description> description = robot::build_description(*robot, std::move(*mesh));
     if (!description) return tl::unexpected(description.error());
     if (Status able = sim::distributed::check_able(*description, robot->program); !able)
         return input_error("{}: {}", options.robot, able.error().message);
     data.mesh = description->mesh;
     data.contact = description->contact;
-    data.notes.insert(data.notes.end(), description->notes.begin(), description->notes.end());
+    data.warnings = description->notes;
     data.mesh_s = watch.read_s();
     return description;
 }
@@ -109,23 +112,37 @@ void broadcast(const Ranks& ranks, Job& job) {
     ranks.broadcast(job.origin);
 }
 
-/// The folder with frames and checkpoint during a run. A new run starts with an empty one.
-Status make_kept_folder(const Options& options, const sim::Description& description) {
+/// The folder of a checkpoint that is there.
+Result<CheckpointFolder> open_kept_folder(const fs::path& kept) {
+    const auto is_there = [&] {
+        std::error_code code;
+        return fs::exists(kept / "state.h5", code);
+    };
+    const auto missing = [&] {
+        return input_error("{}: there is no checkpoint; run without --resume to start anew", kept.string());
+    };
+    if (!is_there()) return missing();
+    Result<CheckpointFolder> folder = CheckpointFolder::open(kept, kept_mark);
+    if (folder && !is_there()) return missing();  // the job that had it has come to its end meanwhile
+    return folder;
+}
+
+/// On root: the folder with frames and checkpoint during a run. A new run starts with an empty one.
+Status make_kept_folder(const Options& options, const sim::Description& description, RobotData& data) {
     if (options.folder.empty()) return {};
     for (const fs::path& input : robot::files_of(options.robot, options.assignments))
         if (Status outside = check_outside(input, options.folder); !outside) return outside;
     if (Status place = check_folder_place(options.folder, report::simulation_mark()); !place) return place;
-    const fs::path kept = kept_folder(options);
+    const fs::path kept = kept_folder(options), frames = kept / kept_mark;
+    Result<CheckpointFolder> folder =
+        options.resume ? open_kept_folder(kept) : CheckpointFolder::create(kept, kept_mark);
+    if (!folder) return tl::unexpected(folder.error());
+    data.kept = std::move(*folder);
+    if (options.resume) return {};
     std::error_code code;
-    if (options.resume && fs::exists(kept / "state.h5", code)) return {};
-    if (options.resume)
-        return input_error("{}: there is no checkpoint; run without --resume to start anew", kept.string());
-    if (!may_replace_folder(kept, "frames"))
-        return input_error("{}: exists and is no checkpoint; move it away", kept.string());
-    fs::remove_all(kept, code);
-    fs::create_directories(kept / "frames", code);
-    if (code) return failure("{}: cannot be created: {}", kept.string(), code.message());
-    return options.frames_every > 0 ? sim::distributed::write_frame_mesh(kept / "frames", description) : Status{};
+    fs::create_directory(frames, code);
+    if (code) return failure("{}: cannot be created: {}", frames.string(), code.message());
+    return options.frames_every > 0 ? sim::distributed::write_frame_mesh(frames, description) : Status{};
 }
 
 std::string at_end(const Options& options, int step, int steps) {
@@ -179,16 +196,15 @@ void print_work(const sim::distributed::RunResult& result, double memory_MB) {
 /// On root: writes and prints the results.
 Result<int> report_results(const Ranks& ranks, const Options& options, const Job& job, const RobotData& data,
                            sim::distributed::RunResult result, double memory_MB) {
-    result.trajectory.warnings.insert(result.trajectory.warnings.begin(), data.notes.begin(), data.notes.end());
+    result.trajectory.warnings.insert(result.trajectory.warnings.begin(), data.warnings.begin(), data.warnings.end());
     report::Simulation simulation{.robot = data.name, .mesh = data.mesh, .result = result.trajectory};
     simulation.tolerance = job.program.tolerance;
     simulation.peak_memory_MB = memory_MB;
     simulation.timing.mesh_s = data.mesh_s;
-    if (!options.folder.empty()) {
-        if (Status status = write_results(options.folder, kept_folder(options), simulation); !status)
+    if (data.kept) {
+        if (Status status = write_results(options.folder, data.kept->path(), simulation); !status)
             return tl::unexpected(status.error());
-        std::error_code code;
-        fs::remove_all(kept_folder(options), code);
+        if (Status status = data.kept->remove(); !status) return tl::unexpected(status.error());
     }
     if (options.json) {
         fmt::print("{}", report::summary_json(simulation));
@@ -214,7 +230,7 @@ Result<int> solve(const Ranks& ranks, const Options& options, const Job& job, Ro
     const Checkpoint checkpoint(*system, kept_folder(options), job.origin);
     const sim::distributed::SelfContactCheck self_contact(*system, data.contact);
     if (self_contact.crosses_at_rest())
-        data.notes.push_back("the robot crosses itself at rest: self-contact is not detected");
+        data.warnings.push_back("the robot crosses itself at rest: self-contact is not detected");
     auto run = run_options(ranks, options, job, frames, checkpoint);
     run.meets = [&self_contact](const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
         return self_contact.meets(from, to);
@@ -251,7 +267,7 @@ Result<int> simulate(const Ranks& ranks, const Options& options) {
     if (ranks.is_root()) {
         Result<sim::Description> read_one = read(options, job, data);
         if (read_one) description = std::move(*read_one);
-        status = read_one ? make_kept_folder(options, description) : Status(tl::unexpected(read_one.error()));
+        status = read_one ? make_kept_folder(options, description, data) : Status(tl::unexpected(read_one.error()));
     }
     if (status = ranks.agree(status); !status) return tl::unexpected(status.error());
     broadcast(ranks, job);
