@@ -15,6 +15,7 @@
 #include "presentation/draw/plot.hpp"
 #include "simulation/calibrate/elongation.hpp"
 #include "simulation/calibrate/fit.hpp"
+#include "simulation/calibrate/part_of_work.hpp"
 #include "simulation/calibrate/ratio.hpp"
 
 namespace pliant::app {
@@ -127,9 +128,10 @@ Status run_ratio(RatioCommand& command) {
     std::copy(command.cells.begin(), command.cells.end(), command.options.cells.begin());
     const auto progress = terminal_progress(command.output);
     RatioRuns runs;
-    for (const double interface : command.interfaces) {
-        command.options.interface = interface;
-        auto result = calibrate::calibrate_ratio(command.options, *progress);
+    for (std::size_t i = 0; i < command.interfaces.size(); ++i) {
+        command.options.interface = command.interfaces[i];
+        auto part = calibrate::equal_part(*progress, "ratio", i, command.interfaces.size());
+        auto result = calibrate::calibrate_ratio(command.options, part);
         if (!result) return tl::unexpected(result.error());
         runs.emplace_back(command.options, std::move(*result));
     }
@@ -262,9 +264,8 @@ Status run_elongation(const ElongationCommand& command) {
     if (!rows) return tl::unexpected(rows.error());
     const auto progress = terminal_progress(command.output);
     for (std::size_t i = 0; command.match && i < rows->size(); ++i) {
-        if (progress->cancelled()) return cancelled();
-        progress->advance("match", static_cast<double>(i) / static_cast<double>(rows->size()));
-        const Result<double> match = calibrate::match_shape_parameter((*rows)[i].test);
+        auto part = calibrate::equal_part(*progress, "match", i, rows->size());
+        const Result<double> match = calibrate::match_shape_parameter((*rows)[i].test, part);
         if (!match) return tl::unexpected(match.error());
         (*rows)[i].shape_parameter = *match;
     }

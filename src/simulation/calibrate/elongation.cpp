@@ -73,7 +73,7 @@ Result<ElongationRow> evaluate(const ElongationTest& t) {
     return ElongationRow{t, strain_B / strain_A, nominal_shape(1 + strain_B) / nominal_shape(1 + strain_A), {}};
 }
 
-Result<double> match_shape_parameter(const ElongationTest& test, std::array<int, 3> cells) {
+Result<double> match_shape_parameter(const ElongationTest& test, Progress& progress, std::array<int, 3> cells) {
     const Result<ElongationRow> row = evaluate(test);
     if (!row) return tl::unexpected(row.error());
     // In the bar of ratio.hpp the stiff part is held; if the softer one is, look at the test from its other end.
@@ -90,7 +90,7 @@ Result<double> match_shape_parameter(const ElongationTest& test, std::array<int,
     if (Status status = check_bar(options); !status) return tl::unexpected(status.error());
     constexpr double bar_mm = 100;
     const double guess = material::shape_parameter_small_strain(std::max(row->neo_hookean, 1 / row->neo_hookean));
-    return match_shape_parameter(options, joint * bar_mm, guess);
+    return match_shape_parameter(options, joint * bar_mm, guess, progress);
 }
 
 Result<std::vector<ElongationRow>> parse_elongation_csv(std::string_view text, const std::string& file) {

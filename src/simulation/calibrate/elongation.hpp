@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/core/error.hpp"
+#include "base/core/progress.hpp"
 
 namespace pliant::calibrate {
 
@@ -41,7 +42,8 @@ struct ElongationRow {
 /// R_omega with which the softer part of a bar of target shapes moves the joint as measured (section 3.4.2, with the
 /// test in place of Abaqus). Uses the bar of ratio.hpp, clamped at its ends: 100 x 10 x 10 mm scaled to the test's
 /// length.
-[[nodiscard]] Result<double> match_shape_parameter(const ElongationTest& test, std::array<int, 3> cells = {48, 5, 5});
+[[nodiscard]] Result<double> match_shape_parameter(const ElongationTest& test, Progress& progress,
+                                                   std::array<int, 3> cells = {48, 5, 5});
 
 /// Columns "length", "interface", "elongation" and "joint", each with its unit of length: "length (mm)". Error: file,
 /// line and what is wrong.

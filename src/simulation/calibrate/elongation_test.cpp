@@ -62,24 +62,26 @@ TEST_CASE("at large strain the closed form gives the exact ratio, and the error 
 }
 
 TEST_CASE("the joint of a simulated bar gives the ratio of its moduli within 1 %, because of the clamps") {
+    Progress silent;
     RatioOptions options;
     options.cells = {24, 3, 3};
-    const double joint_mm = reference_displacement_mm(options, 3.75).value();
+    const double joint_mm = reference_displacement_mm(options, 3.75, silent).value();
     CHECK(evaluate({0.1, 0.05, 0.03, joint_mm * 1e-3})->neo_hookean / 3.75 == near(1, {.relative = 0.01}));
 }
 
 TEST_CASE("the shape parameter is matched to a test, whichever part is held") {
+    Progress silent;
     RatioOptions options;  // the bar that the match runs on
     options.cells = {12, 2, 2};
     options.strain = 0.2;
-    const double joint_mm = blend_displacement_mm(options, 4).value();
-    const auto stiff_held = match_shape_parameter({1, 0.5, 0.2, joint_mm / 100}, options.cells);
+    const double joint_mm = blend_displacement_mm(options, 4, silent).value();
+    const auto stiff_held = match_shape_parameter({1, 0.5, 0.2, joint_mm / 100}, silent, options.cells);
     REQUIRE_MESSAGE(stiff_held, (stiff_held ? "" : stiff_held.error().message));
     CHECK(*stiff_held / 4 == near(1, {.relative = 1e-3}));
-    const auto soft_held = match_shape_parameter({1, 0.5, 0.2, 0.2 - joint_mm / 100}, options.cells);
+    const auto soft_held = match_shape_parameter({1, 0.5, 0.2, 0.2 - joint_mm / 100}, silent, options.cells);
     REQUIRE(soft_held);
     CHECK(*soft_held / 4 == near(1, {.relative = 1e-3}));
-    CHECK_FALSE(match_shape_parameter({1, 0.005, 0.2, 0.001}, options.cells));  // no cell ends there
+    CHECK_FALSE(match_shape_parameter({1, 0.005, 0.2, 0.001}, silent, options.cells));  // no cell ends there
 }
 
 TEST_CASE("tables of tests are read in any unit of length") {

@@ -7,6 +7,7 @@
 
 #include "base/core/json.hpp"
 #include "base/linalg/dense.hpp"
+#include "simulation/calibrate/part_of_work.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
 
@@ -16,6 +17,8 @@ namespace {
 constexpr double length_m = 0.1;
 constexpr double width_m = 0.01;
 constexpr double soft_Pa = 12e6;  // only the ratio matters: no force is prescribed
+constexpr int tets_of_cell = 6;
+constexpr int most_tets = 1000000;  // quadratic ones, which take several GB
 
 /// The interior cell boundary nearest to the interface, as a share of the length.
 double interface_of_cells(const RatioOptions& options) {
@@ -52,16 +55,29 @@ sim::Description bar(const RatioOptions& options, int order, material::Law stiff
     return d;
 }
 
-Result<double> interface_mm(const RatioOptions& options, sim::Description description) {
-    auto model = sim::Model::create(std::move(description));
+Result<double> interface_mm(const RatioOptions& options, int order, material::Law stiff, material::Law soft,
+                            Progress& progress) {
+    if (progress.cancelled()) return cancelled();
+    auto model = sim::Model::create(bar(options, order, std::move(stiff), std::move(soft)));
     if (!model) return tl::unexpected(model.error());
-    Progress silent;
     sim::Program program;
     program.steps = 5;
     program.tolerance = 1e-5;
-    const sim::Trajectory result = sim::run(*model, program, silent);
+    const sim::Trajectory result = sim::run(*model, program, progress);
+    if (!result.converged && progress.cancelled()) return cancelled();
     if (!result.converged) return failure("the bar: {}", result.message);
     return (result.steps.back().markers[0].position_m.x - options.interface * length_m) * 1e3;
+}
+
+Status check_cells(const std::array<int, 3>& cells) {
+    if (std::any_of(cells.begin(), cells.end(), [](int n) { return n < 1 || n > 200; }) || cells[0] < 2)
+        return input_error("--cells: each number is between 1 and 200, the first above 1");
+    const int tets = tets_of_cell * cells[0] * cells[1] * cells[2];
+    if (tets <= most_tets) return {};
+    const double smaller = std::cbrt(static_cast<double>(most_tets) / tets);
+    const auto fewer = [&](int n) { return std::max(1, static_cast<int>(smaller * n)); };
+    return input_error("--cells: {},{},{} makes {} tets, more than {}; {},{},{} is possible", cells[0], cells[1],
+                       cells[2], tets, most_tets, fewer(cells[0]), fewer(cells[1]), fewer(cells[2]));
 }
 
 Status check(const RatioOptions& o) {
@@ -93,24 +109,24 @@ Status check_bar(const RatioOptions& o) {
     if (!(o.strain >= 1e-3 && o.strain <= 1)) return input_error("--strain: {} is not between 0.001 and 1", o.strain);
     if (!(o.poisson_ratio >= 0 && o.poisson_ratio <= 0.495))
         return input_error("--poisson: {} is not between 0 and 0.495", o.poisson_ratio);
-    if (std::any_of(o.cells.begin(), o.cells.end(), [](int n) { return n < 1 || n > 200; }) || o.cells[0] < 2)
-        return input_error("--cells: each number is between 1 and 200, the first above 1");
+    if (Status status = check_cells(o.cells); !status) return status;
     if (!(o.interface >= 0.02 && o.interface <= 0.98))
         return input_error("--interface: {} is not between 0.02 and 0.98", o.interface);
     return {};
 }
 
-Result<double> reference_displacement_mm(const RatioOptions& options, double material_ratio) {
-    return interface_mm(options, bar(options, 2, material::neo_hookean(soft_Pa * material_ratio, options.poisson_ratio),
-                                     material::neo_hookean(soft_Pa, options.poisson_ratio)));
+Result<double> reference_displacement_mm(const RatioOptions& options, double material_ratio, Progress& progress) {
+    return interface_mm(options, 2, material::neo_hookean(soft_Pa * material_ratio, options.poisson_ratio),
+                        material::neo_hookean(soft_Pa, options.poisson_ratio), progress);
 }
 
-Result<double> blend_displacement_mm(const RatioOptions& options, double shape_parameter) {
-    return interface_mm(
-        options, bar(options, 1, material::ShapeBlend{soft_Pa, 1}, material::ShapeBlend{soft_Pa, 1 / shape_parameter}));
+Result<double> blend_displacement_mm(const RatioOptions& options, double shape_parameter, Progress& progress) {
+    return interface_mm(options, 1, material::ShapeBlend{soft_Pa, 1},
+                        material::ShapeBlend{soft_Pa, 1 / shape_parameter}, progress);
 }
 
-Result<double> match_shape_parameter(const RatioOptions& options, double interface_mm, double guess) {
+Result<double> match_shape_parameter(const RatioOptions& options, double interface_mm, double guess,
+                                     Progress& progress) {
     // The softer the other part is, the less the stiff part stretches: the displacement decreases with R_omega, nearly
     // as a power law. So the secant method works in logarithms, with brackets that only shrink.
     constexpr double most = 1000;
@@ -118,8 +134,11 @@ Result<double> match_shape_parameter(const RatioOptions& options, double interfa
     double high = std::log(most);
     double x = std::clamp(std::log(guess), low, high);
     std::optional<std::array<double, 2>> before;
+    double left = 1;  // nobody knows how many bars it takes: each counts for half of what is left
     for (int i = 0; i < 40; ++i) {
-        const Result<double> u = blend_displacement_mm(options, std::exp(x));
+        PartOfWork part(progress, "match", 1 - left, 1 - 0.5 * left);
+        left *= 0.5;
+        const Result<double> u = blend_displacement_mm(options, std::exp(x), part);
         if (!u) return tl::unexpected(u.error());
         const double error = std::log(*u / interface_mm);
         if (std::fabs(error) < 1e-5) return std::exp(x);
@@ -137,13 +156,15 @@ Result<RatioResult> calibrate_ratio(const RatioOptions& options, Progress& progr
     if (Status status = check(options); !status) return tl::unexpected(status.error());
     RatioResult result;
     for (std::size_t i = 0; i < options.ratios.size(); ++i) {
-        if (progress.cancelled()) return cancelled();
-        progress.advance("ratio", static_cast<double>(i) / static_cast<double>(options.ratios.size()));
         const double R = options.ratios[i];
-        const Result<double> u = reference_displacement_mm(options, R);
+        PartOfWork ratio = equal_part(progress, "ratio", i, options.ratios.size());
+        // The reference has quadratic tets, and takes about as long as all bars of the match.
+        PartOfWork reference(ratio, "reference", 0, 0.5), matching(ratio, "match", 0.5, 1);
+        const Result<double> u = reference_displacement_mm(options, R, reference);
         if (!u) return tl::unexpected(u.error());
         const double guess = std::max(1.0, material::shape_parameter_of_thesis(R));
-        const Result<double> match = match_shape_parameter(options, *u, guess);
+        const Result<double> match = match_shape_parameter(options, *u, guess, matching);
+        if (!match && match.error().cause == Cause::cancelled) return tl::unexpected(match.error());
         if (!match) return failure("material ratio {}: {}", R, match.error().message);
         result.rows.push_back(
             {R, *u, *match, material::shape_parameter_of_thesis(R), material::shape_parameter_small_strain(R)});

@@ -19,9 +19,10 @@ namespace pliant::calibrate {
 struct RatioOptions {
     std::vector<double> ratios;  ///< R_m = E_stiff / E_soft, each 1 or more
     double strain = 0.3;
-    double poisson_ratio = 0.45;            ///< of the reference
-    double interface = 0.5;                 ///< where the stiff part ends, as a share of the length: 0.02 to 0.98
-    std::array<int, 3> cells = {48, 5, 5};  ///< of the bar, six linear tets each; the reference has quadratic ones
+    double poisson_ratio = 0.45;  ///< of the reference
+    double interface = 0.5;       ///< where the stiff part ends, as a share of the length: 0.02 to 0.98
+    /// Of the bar, six linear tets each, at most a million tets; the reference has quadratic ones.
+    std::array<int, 3> cells = {48, 5, 5};
 };
 
 struct RatioRow {
@@ -44,11 +45,14 @@ struct RatioResult {
 [[nodiscard]] Result<RatioResult> calibrate_ratio(const RatioOptions& options, Progress& progress);
 
 /// Mean displacement of the interface of the neo-Hookean bar on quadratic tets, mm.
-[[nodiscard]] Result<double> reference_displacement_mm(const RatioOptions& options, double material_ratio);
+[[nodiscard]] Result<double> reference_displacement_mm(const RatioOptions& options, double material_ratio,
+                                                       Progress& progress);
 /// The same for the target-shape bar on linear tets, mm.
-[[nodiscard]] Result<double> blend_displacement_mm(const RatioOptions& options, double shape_parameter);
+[[nodiscard]] Result<double> blend_displacement_mm(const RatioOptions& options, double shape_parameter,
+                                                   Progress& progress);
 /// R_omega for which the target-shape bar has that interface displacement. Errors: there is none between 1 and 1000.
-[[nodiscard]] Result<double> match_shape_parameter(const RatioOptions& options, double interface_mm, double guess);
+[[nodiscard]] Result<double> match_shape_parameter(const RatioOptions& options, double interface_mm, double guess,
+                                                   Progress& progress);
 
 [[nodiscard]] std::string ratio_text(const RatioResult& result);
 [[nodiscard]] std::string ratio_csv(const RatioResult& result);
