@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/core/letters.hpp"
 #include "base/core/parse_all.hpp"
@@ -51,6 +52,10 @@ char separator_of(std::string_view line) {
         if (!quoted && (c == '\t' || c == ';')) return c;
     }
     return ',';
+}
+
+bool is_empty(const std::vector<std::string>& cells) {
+    return std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); });
 }
 
 /// Empty, or a comment, which a spreadsheet may have quoted.
@@ -120,12 +125,15 @@ Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         if (is_passed_over(line)) continue;
-        if (table.columns.empty()) {
-            separator = separator_of(line);
-            table.columns = split(line, separator);
+        const bool is_header = table.columns.empty();
+        if (is_header) separator = separator_of(line);
+        std::vector<std::string> cells = split(line, separator);
+        if (is_empty(cells)) continue;  // a spreadsheet writes an empty row as separators
+        if (is_header) {
+            table.columns = std::move(cells);
             table.header_line = number;
         } else {
-            table.rows.push_back({number, split(line, separator)});
+            table.rows.push_back({number, std::move(cells)});
         }
     }
     if (table.columns.empty()) return input_error("{}: is empty; the first line names the columns: {}", file, example);

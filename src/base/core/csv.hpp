@@ -29,9 +29,9 @@ struct CsvTable {
     [[nodiscard]] Result<double> number(const CsvRow& row, std::size_t column, std::string_view what) const;
 };
 
-/// Empty lines and lines that begin with # are skipped; the first other line names the columns. `example` is a valid
-/// header line, shown in the error for an empty file. Errors: over 64 MB, no names, no rows, a row with values beyond
-/// the last name.
+/// Empty lines, rows of empty cells and lines that begin with # are skipped; the first other line names the columns.
+/// `example` is a valid header line, shown in the error for an empty file. Errors: over 64 MB, no names, no rows, a row
+/// with values beyond the last name.
 [[nodiscard]] Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::string_view example);
 
 /// The text in brackets at the end of a column name: "MPa" for "stress (MPa)"; "" if there is none.

@@ -48,6 +48,17 @@ TEST_CASE("separators, quotes, comments and the lines that messages name") {
     CHECK(parse_csv("a\tb,c\n1\t2", "a.csv", "")->columns.size() == 2);
 }
 
+TEST_CASE("rows whose cells are all empty, as spreadsheets write them, are passed over") {
+    const auto table = parse_csv(",,\nx,y,z\n1,2,3\n,,\n \t, \"\" ,\n4,5,6\n,,,\n", "t.csv", "x,y,z");
+    REQUIRE(table);
+    CHECK(table->columns == std::vector<std::string>{"x", "y", "z"});
+    CHECK(table->header_line == 2);
+    REQUIRE(table->rows.size() == 2);
+    CHECK(table->rows[1].line == 6);
+    CHECK(table->number(table->rows[1], 2, "z") == 6);
+    CHECK_FALSE(parse_csv("x,y,z\n,,\n", "t.csv", "x,y,z"));
+}
+
 TEST_CASE("errors in a table name file and line") {
     CHECK(error_of("") == "a.csv: is empty; the first line names the columns: x,y");
     CHECK(error_of("x,y\n# none\n") == "a.csv: has no rows below the names of the columns");
