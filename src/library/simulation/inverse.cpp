@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "library/base/calls.hpp"
@@ -63,6 +65,7 @@ InverseResult inverse(const Model& model, const InverseOptions& options, const W
     sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {options.starts}, progress);
     progress.rethrow();
     if (found.cancelled && found.waypoints.empty()) library::check(cancelled());
+    std::ranges::copy(robot::notes_on_goals(scene.robot, scene.model.mesh()), std::back_inserter(found.notes));
     std::vector<SteeredInput> inputs = library::steered_inputs(scene.model, task);
     return InverseResult(std::make_shared<const InverseResult::Data>(
         InverseResult::Data{model.data(), std::move(task), std::move(found), std::move(inputs),

@@ -12,6 +12,7 @@
 #include "presentation/report/tables.hpp"
 #include "presentation/report/units.hpp"
 #include "simulation/model/model.hpp"
+#include "simulation/run/result_columns.hpp"
 
 namespace pliant::report {
 namespace {
@@ -105,7 +106,7 @@ std::string with_unit(const std::string& name, const std::string& unit) {
 }
 
 std::vector<std::string> waypoint_header(const InverseReport& r) {
-    std::vector<std::string> cells = {"index", "time", "reached"};
+    std::vector<std::string> cells(sim::columns::waypoint.begin(), sim::columns::waypoint.end());
     for (const Goal& goal : r.task.goals) {
         const std::string unit = goal.kind == GoalKind::direction ? "" : unit_of_goal(goal).name;
         const std::size_t points = goal.kind == GoalKind::position ? goal.markers.size() : 1;

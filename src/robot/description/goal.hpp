@@ -35,9 +35,10 @@ struct GoalSpec {
     /// (waypoints) for a position one point per marker, in length units; for a plane a point, in length units, and a
     /// normal; a direction; a force, N, or its magnitude as the first number.
     std::vector<std::vector<Vec3>> wanted;
-    std::vector<double> times;  ///< (waypoints) program time, s; empty: at its end
-    double tolerance = 0;       ///< m, rad or N
-    double weight = 1;          ///< relative to other goals, if not all can be reached
+    std::vector<double> times;       ///< (waypoints) program time, s; empty: at its end
+    double tolerance = 0;            ///< m, rad or N
+    bool default_tolerance = false;  ///< a tenth of the length unit, because the file gives none
+    double weight = 1;               ///< relative to other goals, if not all can be reached
     int line = 0;
 };
 

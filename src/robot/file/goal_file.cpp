@@ -215,12 +215,11 @@ void read_direction(Reader& reader, GoalSpec& goal) {
     const std::vector<Vec3> directions =
         several ? reader.vectors("direction") : std::vector<Vec3>{reader.vector("direction")};
     for (const Vec3& direction : directions) {
-        const double size = norm(direction);
-        if (!(size > 0)) {
+        if (direction == Vec3{}) {
             goal.wanted.clear();
             return reader.problem("direction", "must not be zero");
         }
-        goal.wanted.push_back({1 / size * direction});
+        goal.wanted.push_back({direction_along(direction)});
     }
     if (goal.markers.size() != 2)
         reader.problem("markers", "a direction is that from one marker to another: markers = [\"a\", \"b\"]");
@@ -248,12 +247,14 @@ void read_force(Reader& reader, const Context& context, GoalSpec& goal) {
     if (goal.wanted[0][0].x < 0) reader.problem("force", "is the total contact force of the obstacle: not below zero");
 }
 
-double read_tolerance(Reader& reader, const GoalSpec& goal, double unit_m) {
+double read_tolerance(Reader& reader, GoalSpec& goal, double unit_m) {
     double tolerance = 0;
     if (goal.kind == GoalKind::direction)
         tolerance = reader.quantity("tolerance", Dimension::angle, std::numbers::pi / 180);
-    if (goal.kind == GoalKind::position || goal.kind == GoalKind::plane)
+    if (goal.kind == GoalKind::position || goal.kind == GoalKind::plane) {
         tolerance = reader.quantity("tolerance", Dimension::length, 0.1 * unit_m);
+        goal.default_tolerance = !reader.has("tolerance");
+    }
     if (goal.kind == GoalKind::contact_force || goal.kind == GoalKind::support_force)
         tolerance = reader.quantity("tolerance", Dimension::force);
     if (!(tolerance > 0) && (goal.kind == GoalKind::position || reader.has("tolerance")))
@@ -293,7 +294,7 @@ void read_goal(Reader& reader, Context& context, GoalSpec& goal) {
     } else if (given[0] == "plane") {
         goal.kind = GoalKind::plane;
         const PlaneSelector plane = read_plane(reader);
-        if (norm(plane.normal) > 0) goal.wanted = {{plane.point, 1 / norm(plane.normal) * plane.normal}};
+        if (plane.normal != Vec3{}) goal.wanted = {{plane.point, direction_along(plane.normal)}};
         if (goal.markers.size() != 1) reader.problem("marker", "a plane is for one marker");
     } else if (given[0] == "direction") {
         read_direction(reader, goal);

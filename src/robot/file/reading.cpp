@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 
@@ -47,10 +48,18 @@ BoxSelector read_box(Reader& reader) {
     return {a, b};
 }
 
+Vec3 direction_along(const Vec3& vector) {
+    // The largest component comes to 1 first: squares of huge or tiny numbers are no numbers.
+    const double largest = std::max({std::fabs(vector.x), std::fabs(vector.y), std::fabs(vector.z)});
+    if (!(largest > 0)) return {};
+    return unit(Vec3{vector.x / largest, vector.y / largest, vector.z / largest});
+}
+
 PlaneSelector read_plane(Reader& reader) {
     Reader plane = reader.table("plane");
-    const PlaneSelector selector{plane.vector("point"), plane.vector("normal")};
-    if (plane.has("normal") && norm(selector.normal) == 0) plane.problem("normal", "must not be zero");
+    PlaneSelector selector{plane.vector("point"), plane.vector("normal")};
+    if (plane.has("normal") && selector.normal == Vec3{}) plane.problem("normal", "must not be zero");
+    if (!std::isnormal(dot(selector.normal, selector.normal))) selector.normal = direction_along(selector.normal);
     plane.finish();
     return selector;
 }

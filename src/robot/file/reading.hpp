@@ -42,7 +42,10 @@ bool refuse_blank(config::Reader& reader, const std::string& name);
 /// `box`: two corners, the lower one first. Empty where it is missing or wrong.
 [[nodiscard]] BoxSelector read_box(config::Reader& reader);
 
-/// `plane`: a point and a normal that is not zero.
+/// Of length 1, however large or small its components are; zero for a zero vector.
+[[nodiscard]] Vec3 direction_along(const Vec3& vector);
+
+/// `plane`: a point and a normal that is not zero, nor of components whose squares are no numbers.
 [[nodiscard]] PlaneSelector read_plane(config::Reader& reader);
 
 /// The table `key`: where a mesh from a file is put. The file as it is, where the key is missing.

@@ -1,5 +1,5 @@
 // Columns of the table of steps (steps.csv): a thing called NAME has one column NAME_ENDING for each ending of its
-// kind.
+// kind. And the first columns of the tables of the inverse and of the workspace.
 #pragma once
 
 #include <array>
@@ -20,5 +20,9 @@ inline constexpr std::array<std::string_view, 6> joint = {"force_x_N",   "force_
 /// And of a joint that turns or slides.
 inline constexpr std::array<std::string_view, 2> turning = {"angle_deg", "effort_Nm"};
 inline constexpr std::array<std::string_view, 2> sliding = {"position_mm", "effort_N"};
+
+/// Of waypoints.csv and workspace.csv, whatever the robot is. A ratio that is steered has its actuator's name there.
+inline constexpr std::array<std::string_view, 3> waypoint = {"index", "time", "reached"};
+inline constexpr std::array<std::string_view, 2> workspace = {"piece", "found"};
 
 }  // namespace pliant::sim::columns

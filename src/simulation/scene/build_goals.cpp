@@ -1,8 +1,11 @@
 #include "simulation/scene/build_goals.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/core/boxes.hpp"
+#include "simulation/run/result_columns.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -84,21 +87,48 @@ sim::Steered steered(std::size_t actuator, const std::string& name, const Steeri
     return {actuator, name, spec.low, spec.high, ratio ? 1.0 : 0.0, spec.rate, spec.effort_price, spec.change_price};
 }
 
+/// A ratio has no unit, so that its column in the table of results is called as its actuator.
+template <class Spec>
+Status check_column(const Robot& robot, const char* kind, const Spec& spec, bool is_ratio, bool need_goals) {
+    const auto is_taken = [&](const auto& columns) { return std::ranges::find(columns, spec.name) != columns.end(); };
+    if (!is_ratio || !(need_goals ? is_taken(sim::columns::waypoint) : is_taken(sim::columns::workspace))) return {};
+    return input_error_at(robot.file.string(), spec.line,
+                          "{} \"{}\": {} has a column of this name already; give the {} another name", kind, spec.name,
+                          need_goals ? "waypoints.csv" : "workspace.csv", kind);
+}
+
+bool steers_ratio(const CableSpec& cable) {
+    return cable.target.kind == CableTarget::Kind::length_ratio;
+}
+bool steers_ratio(const ChamberSpec& chamber) {
+    const auto kind = chamber.target.kind;
+    return kind == ChamberTarget::Kind::volume_ratio || kind == ChamberTarget::Kind::gas_ratio;
+}
+
+Status check_columns_of_inputs(const Robot& robot, bool need_goals) {
+    for (const CableSpec& cable : robot.cables) {
+        if (!cable.steering) continue;
+        Status status = check_column(robot, "cable", cable, steers_ratio(cable), need_goals);
+        if (!status) return status;
+    }
+    for (const ChamberSpec& chamber : robot.chambers) {
+        if (!chamber.steering) continue;
+        Status status = check_column(robot, "chamber", chamber, steers_ratio(chamber), need_goals);
+        if (!status) return status;
+    }
+    return {};
+}
+
 std::vector<sim::Steered> steered_actuators(const Robot& robot) {
     std::vector<sim::Steered> inputs;
     for (std::size_t c = 0; c < robot.cables.size(); ++c) {
         const CableSpec& cable = robot.cables[c];
-        if (cable.steering)
-            inputs.push_back(
-                steered(c, cable.name, *cable.steering, cable.target.kind == CableTarget::Kind::length_ratio));
+        if (cable.steering) inputs.push_back(steered(c, cable.name, *cable.steering, steers_ratio(cable)));
     }
     for (std::size_t c = 0; c < robot.chambers.size(); ++c) {
         const ChamberSpec& chamber = robot.chambers[c];
-        const auto kind = chamber.target.kind;
         if (chamber.steering)
-            inputs.push_back(
-                steered(robot.cables.size() + c, chamber.name, *chamber.steering,
-                        kind == ChamberTarget::Kind::volume_ratio || kind == ChamberTarget::Kind::gas_ratio));
+            inputs.push_back(steered(robot.cables.size() + c, chamber.name, *chamber.steering, steers_ratio(chamber)));
     }
     return inputs;
 }
@@ -124,6 +154,7 @@ Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model
         return input_error(
             "{}: range: no actuator has one; give a cable or chamber a range, such as range = [0.7, 1.0]",
             robot.file.string());
+    if (Status columns = check_columns_of_inputs(robot, need_goals); !columns) return tl::unexpected(columns.error());
     std::size_t waypoints = 1;
     for (const GoalSpec& goal : robot.goals) {
         Result<sim::Goal> made = tied(robot, model, goal);
@@ -140,6 +171,21 @@ Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model
     task.timed = !task.times.empty();
     if (!task.timed) task.times.assign(waypoints, robot.program.duration);
     return task;
+}
+
+std::vector<std::string> notes_on_goals(const Robot& robot, const mesh::TetMesh& mesh) {
+    constexpr double most_share = 0.05;
+    const double size_m = bounds_of(mesh.points).diagonal();
+    std::vector<std::string> notes;
+    for (const GoalSpec& goal : robot.goals) {
+        if (!goal.default_tolerance || !(goal.tolerance > most_share * size_m)) continue;
+        notes.push_back(
+            fmt::format("goal \"{}\" gives no tolerance: that of 0.1 length_unit is {:.3g} mm, {:.3g} % of the robot's "
+                        "size, and all that is nearer counts as reached; a thousandth of the size, tolerance = "
+                        "\"{:.1g} mm\", is usual",
+                        goal.name, 1e3 * goal.tolerance, 100 * goal.tolerance / size_m, size_m));
+    }
+    return notes;
 }
 
 double goal_tolerance(const Program& program) {

@@ -10,6 +10,7 @@
 #include "simulation/scene/build_chambers.hpp"
 #include "simulation/scene/build_contact.hpp"
 #include "simulation/scene/build_description.hpp"
+#include "simulation/scene/build_goals.hpp"
 #include "simulation/scene/build_grades.hpp"
 #include "simulation/scene/build_joints.hpp"
 #include "simulation/scene/build_places.hpp"
@@ -131,6 +132,7 @@ Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mes
         for (std::string& note : notes_on_contact(robot, draft.bodies, *description.contact))
             description.notes.push_back(std::move(note));
     }
+    for (std::string& note : notes_on_goals(robot, description.mesh)) description.notes.push_back(std::move(note));
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
     return std::move(description);
 }
