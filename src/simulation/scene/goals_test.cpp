@@ -85,6 +85,62 @@ TEST_CASE("a goal that is too far away for its direction to be told is refused")
     CHECK(holds(problem("1e30"), "bar.toml: goal \"reach\": its point [1e+30, 5, 9] is over a million times"));
 }
 
+TEST_CASE("directions of huge and of tiny numbers are what they say") {
+    const std::string turn = "[[goal]]\nname = \"turn\"\nmarkers = [\"middle\", \"tip\"]\ndirection = ";
+    for (const char* numbers : {"[3e300, 4e300, 0]", "[3e-200, 4e-200, 0]", "[3, 4, 0]"}) {
+        CAPTURE(numbers);
+        const auto aim = parse_robot(robot_with_cable + turn + numbers + "\n", "bar.toml");
+        REQUIRE_MESSAGE(aim, (aim ? "" : aim.error().message));
+        CHECK(norm(aim->goals[0].wanted[0][0] - Vec3{0.6, 0.8, 0}) < 1e-9);
+        const auto flat = parse_robot(
+            robot_with_cable + reach + "plane = { point = [0, 0, 8], normal = " + numbers + " }\n", "bar.toml");
+        REQUIRE_MESSAGE(flat, (flat ? "" : flat.error().message));
+        CHECK(norm(flat->goals[0].wanted[0][1] - Vec3{0.6, 0.8, 0}) < 1e-9);
+    }
+    CHECK_FALSE(parse_robot(robot_with_cable + turn + "[0, 0, 0]\n", "bar.toml"));
+}
+
+TEST_CASE("a note tells of a tolerance that the file does not give and that is large for the robot") {
+    const std::string point = reach + "point = [38, 5, 9]\n";
+    const auto notes = [](const std::string& text) {
+        const auto built = testing::build(parse_robot(text, "bar.toml"));
+        return built.model.description().notes;
+    };
+    CHECK(notes(robot_with_cable + point).empty());
+    // The same bar drawn in metres.
+    const std::string small = R"(name = "bar"
+length_unit = "m"
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.4 }
+body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [0.04, 0.01, 0.01]] } }]
+mesh = { size = "6 mm", order = 1 }
+fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 0.01, 0.01]] }]
+cable = [{ name = "flexor", points = [[0, 0.005, 0.008], [0.04, 0.005, 0.008]], range = [0.8, 1.0] }]
+marker = [{ name = "tip", point = [0.04, 0.005, 0.005] }]
+)";
+    const std::string wanted = "goal = [{ name = \"reach\", marker = \"tip\", point = [0.038, 0.005, 0.009]";
+    const auto found = notes(small + wanted + " }]\n");
+    REQUIRE(found.size() == 1);
+    CHECK(found[0] ==
+          "goal \"reach\" gives no tolerance: that of 0.1 length_unit is 100 mm, 236 % of the robot's size, and all "
+          "that is nearer counts as reached; a thousandth of the size, tolerance = \"0.04 mm\", is usual");
+    CHECK(notes(small + wanted + ", tolerance = \"100 mm\" }]\n").empty());
+}
+
+TEST_CASE("an actuator that moves by a ratio does not have the name of a column of the tables of results") {
+    const auto named = [](const std::string& name, bool need_goals) {
+        std::string text = robot_with_cable;
+        text.replace(text.find("\"flexor\""), 8, "\"" + name + "\"");
+        const auto built = testing::build(parse_robot(text + reach + "point = [38, 5, 9]\n", "bar.toml"));
+        const auto task = build_goals(built.robot, built.model, need_goals);
+        return task ? "" : task.error().message;
+    };
+    CHECK(holds(named("reached", true),
+                "cable \"reached\": waypoints.csv has a column of this name already; give the cable another name"));
+    CHECK(named("reached", false).empty());
+    CHECK(named("found", true).empty());
+    CHECK(holds(named("found", false), "workspace.csv has a column of this name already"));
+}
+
 TEST_CASE("a goal for what the model does not have, or a direction of markers at one place, is refused") {
     auto built = testing::build(parse_robot(robot_with_cable + reach + "point = [38, 5, 9]\n", "bar.toml"));
     built.robot.goals[0].markers = {"none"};
