@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@
 #include "command.hpp"
 #include "inputs.hpp"
 #include "output_option.hpp"
+#include "printed.hpp"
+#include "simulation/inverse/workspace.hpp"
 #include "watched.hpp"
 
 namespace pliant::app {
@@ -27,7 +30,7 @@ struct WorkspaceArguments {
     std::string robot;
     std::string folder;
     WorkspaceOptions search;
-    std::optional<int> between;
+    std::optional<int> side, between;
     std::vector<std::string> assignments;
     Output output;
 };
@@ -35,6 +38,7 @@ struct WorkspaceArguments {
 /// Completed pieces are stored beside the results until these are written.
 Result<WorkspaceOptions> search_options(const WorkspaceArguments& options) {
     WorkspaceOptions search = options.search;
+    search.side = options.side.value_or(search.side);
     search.between = options.between.value_or(search.between);
     if (options.folder.empty() && search.resume)
         return input_error("--resume needs --output: the checkpoint is kept next to that folder");
@@ -47,6 +51,7 @@ int tell_cancelled(const WorkspaceArguments& options, const WorkspaceOptions& se
                search.checkpoint.empty()
                    ? ""
                    : fmt::format("; the same command with --resume continues from {}", search.checkpoint.string()));
+    if (options.output.json) print_json(nlohmann::json{{"error", "cancelled"}}, -1);
     return exit_failed;
 }
 
@@ -87,6 +92,16 @@ void print_workspace(const WorkspaceArguments& options, const Model& model, cons
     if (!options.folder.empty()) fmt::print("results: {}\n", options.folder);
 }
 
+/// An option that this search has no use for.
+void note_useless_options(const WorkspaceArguments& options, std::size_t inputs) {
+    if (options.between && inputs == 1)
+        fmt::print(stderr, "{}: note: --between is for two actuators or more; --side gives the samples of one\n",
+                   options.robot);
+    if (options.side && inputs > sim::inverse::most_inputs_with_sheets)
+        fmt::print(stderr, "{}: note: --side is for up to {} actuators; --between gives the samples of more\n",
+                   options.robot, sim::inverse::most_inputs_with_sheets);
+}
+
 Result<int> workspace(const WorkspaceArguments& options) {
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
     if (Status place = check_results_place(options.folder, "workspace.json", options.robot, options.assignments);
@@ -108,15 +123,15 @@ Result<int> workspace(const WorkspaceArguments& options) {
             fmt::print("{}", found.json());
         else if (!options.output.quiet)
             print_workspace(options, model, found);
-        if (options.between && found.inputs().size() == 1)
-            fmt::print(stderr, "{}: note: --between is for two actuators or more; --side gives the samples of one\n",
-                       options.robot);
+        note_useless_options(options, found.inputs().size());
+        if (found.message().empty()) return exit_done;
+        fmt::print(stderr, "{}: {}\n", options.robot, found.message());
+        return exit_failed;
     } catch (const Failure& failure) {
         if (failure.kind() != Failure::Kind::cancelled) throw;
         progress.reset();
         return tell_cancelled(options, *search);
     }
-    return exit_done;
 }
 
 }  // namespace
@@ -128,10 +143,9 @@ void add_workspace(CLI::App& app, int& status) {
     command->add_option("robot", options->robot, "robot file (TOML) with ranges of actuators")->required();
     add_output_path(*command, options->folder, "folder for table, surfaces and picture");
     command
-        ->add_option("--side", options->search.side,
-                     "samples along each input of a sheet, over which two inputs vary, or of the only one")
-        ->check(between(2, 1000))
-        ->capture_default_str();
+        ->add_option("--side", options->side,
+                     "samples along each input of a sheet, over which two inputs vary, or of the only one (default 9)")
+        ->check(between(2, 1000));
     command
         ->add_option("--between", options->between,
                      "samples spread over the ranges of two actuators or more, besides those of the sheets (default "

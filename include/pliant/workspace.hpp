@@ -49,6 +49,8 @@ class PLIANT_API Workspace {
 public:
     /// The inputs that were varied.
     [[nodiscard]] const std::vector<SteeredInput>& inputs() const;
+    /// Why no sample has an equilibrium, one sentence; empty if one has.
+    [[nodiscard]] const std::string& message() const;
     /// Number of samples in all pieces.
     [[nodiscard]] std::size_t sample_count() const;
     /// One sample, counted from 0.
@@ -82,8 +84,8 @@ private:
 };
 
 /// Solves for equilibria on sheets of the input ranges and at further samples between them.
-/// @throws Failure if no actuator has a range, the robot moves in time, the options or the checkpoint are invalid, or
-/// the checkpoint cannot be written; or when cancelled.
+/// @throws Failure if no actuator has a range, the robot moves in time, the options or the checkpoint are invalid,
+/// there would be no sample, or the checkpoint cannot be written; or when cancelled.
 [[nodiscard]] PLIANT_API Workspace workspace(const Model& model, const WorkspaceOptions& options = {},
                                              const Watch& watch = {});
 

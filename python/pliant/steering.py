@@ -217,6 +217,11 @@ class Workspace(NotPickled):
         return np.array([s[2] for s in self._samples], dtype=np.bool_)
 
     @property
+    def message(self) -> str:
+        """Why no sample has an equilibrium; empty if one has."""
+        return self._space.message
+
+    @property
     def markers(self) -> Array:
         """(samples, markers, 3) m; NaN where no equilibrium was found."""
         return self._filled(3, (len(self.model.markers), 3))

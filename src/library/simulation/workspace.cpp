@@ -78,8 +78,8 @@ std::optional<KeptPieces> open_pieces(const Model::Data& model, const WorkspaceO
             throw Failure(Failure::Kind::input, "a search is to be gone on with, but no checkpoint is named");
         return std::nullopt;
     }
-    // 2: pieces with a checksum and the search that they are of.
-    const std::string origin = fmt::format("workspace 2\n{} {}\n{}\n{}", options.side, options.between,
+    // 3: pieces with a checksum, the search that they are of, and why they lack samples.
+    const std::string origin = fmt::format("workspace 3\n{} {}\n{}\n{}", options.side, options.between,
                                            model.robot->origin(), sim::mesh_digest(model.scene.model.mesh()));
     return options.resume ? KeptPieces::open(options.checkpoint, origin)
                           : KeptPieces::create(options.checkpoint, origin);
@@ -107,6 +107,7 @@ struct Workspace::Data {
     sim::inverse::Workspace found;
     std::vector<SteeredInput> inputs;
     std::vector<std::pair<std::size_t, const sim::inverse::WorkspaceSample*>> samples;  ///< with their piece
+    std::string message;
     fs::path checkpoint;
     std::shared_ptr<const sim::Equilibrium> system;
 
@@ -119,6 +120,7 @@ Workspace workspace(const Model& model, const WorkspaceOptions& options, const W
     check_options(options);
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model, false));
+    library::check(sim::inverse::check_samples(task, {options.side, options.between}));
     const std::optional<KeptPieces> kept = open_pieces(*model.data(), options);
     library::WatchedProgress progress(watch, "workspace");
     auto found = sim::inverse::find_workspace(
@@ -129,6 +131,7 @@ Workspace workspace(const Model& model, const WorkspaceOptions& options, const W
     auto data = std::make_shared<Workspace::Data>();
     data->found = library::value_of(std::move(found));
     if (data->found.cancelled) library::check(cancelled());
+    data->message = sim::inverse::why_nothing_is_found(data->found);
     data->model = model.data();
     data->task = std::move(task);
     data->inputs = library::steered_inputs(scene.model, data->task);
@@ -145,6 +148,9 @@ Workspace::Workspace(std::shared_ptr<const Data> data) : data_(std::move(data)) 
 
 const std::vector<SteeredInput>& Workspace::inputs() const {
     return data_->inputs;
+}
+const std::string& Workspace::message() const {
+    return data_->message;
 }
 std::size_t Workspace::sample_count() const {
     return data_->samples.size();

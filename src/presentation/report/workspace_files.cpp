@@ -15,6 +15,7 @@
 #include "presentation/report/inverse_tables.hpp"
 #include "presentation/report/tables.hpp"
 #include "presentation/report/units.hpp"
+#include "simulation/run/result_columns.hpp"
 
 namespace pliant::report {
 namespace {
@@ -25,7 +26,7 @@ using sim::inverse::WorkspacePiece;
 using sim::inverse::WorkspaceSample;
 
 std::vector<std::string> header(const WorkspaceReport& r) {
-    std::vector<std::string> cells = {"piece", "found"};
+    std::vector<std::string> cells(sim::columns::workspace.begin(), sim::columns::workspace.end());
     for (const sim::Steered& input : r.task.inputs) {
         const std::string unit = unit_of(r.model, input).name;
         cells.push_back(csv_field(unit.empty() ? input.name : input.name + "_" + unit));
@@ -145,6 +146,7 @@ std::string workspace_json(const WorkspaceReport& r, int indent) {
         const Vec3 low = mm_per_m * boxes[m].low, high = mm_per_m * boxes[m].high;
         out["markers"][markers[m].name] = {{"low_mm", {low.x, low.y, low.z}}, {"high_mm", {high.x, high.y, high.z}}};
     }
+    if (const std::string why = sim::inverse::why_nothing_is_found(r.workspace); !why.empty()) out["message"] = why;
     return json_text(out, indent) + "\n";
 }
 

@@ -25,12 +25,13 @@ std::vector<MeasuredPath> lines_of(const WorkspaceReport& report, std::size_t ma
     std::vector<MeasuredPath> lines;
     for (const sim::inverse::WorkspacePiece& piece : report.workspace.pieces) {
         const auto add = [&](int count, const auto& index) {
-            MeasuredPath line{report.model.description().markers[marker].name, {}};
+            bool goes_on = false;  // no line leads over what has no equilibrium
             for (int k = 0; k < count; ++k) {
                 const auto& sample = piece.samples[static_cast<std::size_t>(index(k))];
-                if (sample.found) line.points.push_back(sample.markers[marker]);
+                if (sample.found && !goes_on) lines.push_back({report.model.description().markers[marker].name, {}});
+                if (sample.found) lines.back().points.push_back(sample.markers[marker]);
+                goes_on = sample.found;
             }
-            if (!line.points.empty()) lines.push_back(std::move(line));
         };
         for (int row = 0; row < piece.rows; ++row) add(piece.columns, [&](int k) { return row * piece.columns + k; });
         for (int column = 0; piece.rows > 1 && column < piece.columns; ++column)

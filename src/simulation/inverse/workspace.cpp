@@ -1,6 +1,7 @@
 #include "simulation/inverse/workspace.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "base/linalg/vectors.hpp"
@@ -61,6 +62,25 @@ std::vector<Plan> plans_for(Eigen::Index size, const WorkspaceOptions& options) 
     return plans;
 }
 
+/// The samples of a plan, with each row of a sheet, and the rows themselves, from the end that is nearer to rest: from
+/// there the way to the first sample is the shortest.
+std::vector<std::size_t> order_of_solving(const Plan& plan, const Eigen::VectorXd& rest) {
+    std::vector<std::size_t> order(plan.inputs.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (plan.rows == 0) return order;
+    const auto at = [&](int row, int column) { return static_cast<std::size_t>(row * plan.columns + column); };
+    const auto to_rest = [&](int row, int column) { return (plan.inputs[at(row, column)] - rest).norm(); };
+    const bool from_last_row = to_rest(plan.rows - 1, 0) < to_rest(0, 0);
+    const bool from_last_column = to_rest(0, plan.columns - 1) < to_rest(0, 0);
+    auto next = order.begin();
+    for (int row = 0; row < plan.rows; ++row) {
+        for (int column = 0; column < plan.columns; ++column)
+            *next++ =
+                at(from_last_row ? plan.rows - 1 - row : row, from_last_column ? plan.columns - 1 - column : column);
+    }
+    return order;
+}
+
 class PieceSolver {
 public:
     PieceSolver(Stepper& stepper, const InverseTask& task, const InputSpace& space)
@@ -71,13 +91,16 @@ public:
                                         const std::function<void()>& after_each) const {
         WorkspacePiece piece{plan.rows, plan.columns, {}};
         piece.samples.resize(plan.inputs.size());
-        RobotState now = stepper_.rest(), row = now;
-        for (std::size_t k = 0; k < plan.inputs.size(); ++k) {
+        Start now{stepper_.rest(), true}, row = now;
+        const std::vector<std::size_t> order = order_of_solving(plan, space_.rest());
+        for (std::size_t n = 0; n < order.size(); ++n) {
             if (progress.cancelled()) return std::nullopt;
             // The first of a row starts from the first of the previous row.
-            if (plan.rows > 1 && k % static_cast<std::size_t>(plan.columns) == 0) now = row;
-            piece.samples[k] = sample(now, plan.inputs[k], progress);
-            if (plan.rows > 1 && k % static_cast<std::size_t>(plan.columns) == 0 && piece.samples[k].found) row = now;
+            const bool begins_row = plan.rows > 1 && n % static_cast<std::size_t>(plan.columns) == 0;
+            if (begins_row) now = row;
+            WorkspaceSample& solved = piece.samples[order[n]];
+            solved = sample(now, plan.inputs[order[n]], piece.reason, progress);
+            if (begins_row && solved.found) row = now;
             after_each();
         }
         if (progress.cancelled()) return std::nullopt;
@@ -85,24 +108,34 @@ public:
     }
 
 private:
-    /// `now` becomes its state; if none is found, it is unchanged, after also trying from rest.
-    WorkspaceSample sample(RobotState& now, const Eigen::VectorXd& inputs, const Progress& progress) const {
+    struct Start {
+        RobotState state;
+        bool is_rest;
+    };
+
+    /// `now` becomes its state; if none is found, it is unchanged, after also trying from rest, and `reason` says why
+    /// unless it says so of an earlier sample.
+    WorkspaceSample sample(Start& now, const Eigen::VectorXd& inputs, std::string& reason,
+                           const Progress& progress) const {
         WorkspaceSample sample;
         for (Eigen::Index i = 0; i < inputs.size(); ++i) sample.values.push_back(space_.value(i, inputs[i]));
         const Inputs wanted = space_.inputs(inputs, task_.times.back());
-        RobotState next = now;
-        sample.found = stepper_.drive(next, wanted, progress).arrived;
-        if (!sample.found && !progress.cancelled()) {
+        RobotState next = now.state;
+        const StepReport report = stepper_.drive(next, wanted, progress);
+        sample.found = report.arrived;
+        if (!sample.found && !now.is_rest && !progress.cancelled()) {
             next = stepper_.rest();
             sample.found = stepper_.drive(next, wanted, progress).arrived;
         }
+        if (!sample.found && reason.empty()) reason = report.reason;
         if (!sample.found) return sample;
-        now = std::move(next);
+        now = {std::move(next), false};
+        const RobotState& there = now.state;
         const Description& d = stepper_.model().description();
         for (const Marker& marker : d.markers)
-            sample.markers.push_back(position(marker.point, linalg::view(std::as_const(now.now.state.x))));
+            sample.markers.push_back(position(marker.point, linalg::view(there.x())));
         for (std::size_t a = 0; a < d.steered_count(); ++a) {
-            const double m = now.now.state.multiplier[static_cast<Eigen::Index>(a)];
+            const double m = there.now.state.multiplier[static_cast<Eigen::Index>(a)];
             if (a < d.cables.size())
                 sample.tensions_N.push_back(m);
             else
@@ -130,11 +163,29 @@ bool fits(const WorkspacePiece& piece, const Plan& plan, const Description& d, s
 
 }  // namespace
 
+Status check_samples(const InverseTask& task, const WorkspaceOptions& options) {
+    if (task.inputs.size() <= most_inputs_with_sheets || options.between > 0) return {};
+    return input_error(
+        "no sample is asked for: more than {} actuators have ranges, so that there are no sheets, only samples spread "
+        "between (--between), of which 1 is the least",
+        most_inputs_with_sheets);
+}
+
+std::string why_nothing_is_found(const Workspace& workspace) {
+    std::string reason;
+    for (const WorkspacePiece& piece : workspace.pieces) {
+        if (std::ranges::any_of(piece.samples, &WorkspaceSample::found)) return "";
+        if (reason.empty()) reason = piece.reason;
+    }
+    return "no sample has an equilibrium" + (reason.empty() ? "" : ": " + reason);
+}
+
 Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepping, const InverseTask& task,
                                  const WorkspaceOptions& options,
                                  const std::function<std::optional<WorkspacePiece>(std::size_t)>& known,
                                  const std::function<Status(std::size_t, const WorkspacePiece&)>& keep,
                                  Progress& progress) {
+    if (Status status = check_samples(task, options); !status) return tl::unexpected(status.error());
     const std::vector<Plan> plans = plans_for(static_cast<Eigen::Index>(task.inputs.size()), options);
     std::size_t all = 0, done = 0;
     for (const Plan& plan : plans) all += plan.inputs.size();

@@ -1,8 +1,8 @@
 // The positions that markers can reach within the ranges of the inputs, and the tensions and pressures there.
 //
 // The boundary of the workspace lies among the images of the sheets of the input ranges, on which two inputs vary and
-// all others are at one end, and of points where the motion folds back. Each sheet is solved on a grid, from rest and
-// then from neighbour to neighbour; further inputs, spread evenly, sample the interior.
+// all others are at one end, and of points where the motion folds back. Each sheet is solved on a grid, from the corner
+// nearest to rest and then from neighbour to neighbour; further inputs, spread evenly, sample the interior.
 #pragma once
 
 #include <array>
@@ -32,6 +32,7 @@ struct WorkspaceSample {
 struct WorkspacePiece {
     int rows = 0, columns = 0;  ///< of a sheet's grid, stored row by row; 0: not a sheet. With one input: one row
     std::vector<WorkspaceSample> samples;
+    std::string reason{};  ///< why the first sample for which no equilibrium was found has none; empty if all have one
 };
 
 struct Workspace {
@@ -42,8 +43,15 @@ struct Workspace {
 /// With more inputs than this there are too many sheets: only the spread samples are solved.
 inline constexpr std::size_t most_inputs_with_sheets = 5;
 
+/// Error: with these inputs and options there would be no sample.
+[[nodiscard]] Status check_samples(const InverseTask& task, const WorkspaceOptions& options);
+
+/// As a sentence, where no sample has an equilibrium; empty if one has.
+[[nodiscard]] std::string why_nothing_is_found(const Workspace& workspace);
+
 /// `known`: returns a piece computed earlier, by its index, if there is one. `keep` receives each new piece; its error
-/// ends the work. Both may be empty. The result does not depend on interruptions.
+/// ends the work. Both may be empty. The result does not depend on interruptions. Errors: those of check_samples() and
+/// `keep`.
 [[nodiscard]] Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepping,
                                                const InverseTask& task, const WorkspaceOptions& options,
                                                const std::function<std::optional<WorkspacePiece>(std::size_t)>& known,

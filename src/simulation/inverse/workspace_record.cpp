@@ -29,7 +29,11 @@ WorkspaceSample read_sample(cbor::Reader& outer, const Json& map) {
 }  // namespace
 
 std::string piece_bytes(const WorkspacePiece& piece, const std::string& identity) {
-    Json map = {{"of", identity}, {"rows", piece.rows}, {"columns", piece.columns}, {"samples", Json::array()}};
+    Json map = {{"of", identity},
+                {"rows", piece.rows},
+                {"columns", piece.columns},
+                {"reason", piece.reason},
+                {"samples", Json::array()}};
     for (const WorkspaceSample& sample : piece.samples) {
         map["samples"].push_back({{"values", packed(sample.values)},
                                   {"found", sample.found},
@@ -47,7 +51,8 @@ Result<WorkspacePiece> piece_from_bytes(std::string_view bytes, const std::strin
     cbor::Reader reader(map);
     if (reader.text("of") != identity) reader.fail("a piece of another search");
     constexpr int most = std::numeric_limits<int>::max();
-    WorkspacePiece piece{reader.integer("rows", 0, most), reader.integer("columns", 0, most), {}};
+    WorkspacePiece piece{
+        reader.integer("rows", 0, most), reader.integer("columns", 0, most), {}, reader.text("reason")};
     const Json& samples = reader.at("samples");
     if (!samples.is_array()) reader.fail("no samples");
     for (std::size_t k = 0; reader.status() && k < samples.size(); ++k)

@@ -3,7 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "base/core/near.hpp"
 #include "simulation/inverse/test_robots.hpp"
@@ -62,6 +65,45 @@ TEST_CASE("every sample is the equilibrium of its inputs, and the sheets include
     CHECK(corners == 24);
 }
 
+TEST_CASE("where nothing is found the first reason is told") {
+    const WorkspaceSample none{{0.8}, false, {}, {}, {}}, one{{0.9}, true, {{1, 2, 3}}, {0.1}, {}};
+    Workspace workspace{{{1, 1, {none}, "it is too far"}, {0, 0, {none}, "it is torn"}}, false};
+    CHECK(why_nothing_is_found(workspace) == "no sample has an equilibrium: it is too far");
+    workspace.pieces[1].samples.push_back(one);
+    CHECK(why_nothing_is_found(workspace).empty());
+}
+
+TEST_CASE("samples stand in the order of the grid, wherever their solving begins") {
+    const Model model = made(bar(2));
+    const InverseTask task = task_for(model, {{0.85, 1}, {0.9, 1}});
+    Progress silent;
+    const auto workspace = find_workspace(model, tight, task, {.side = 3, .between = 0}, {}, {}, silent);
+    REQUIRE(workspace);
+    REQUIRE(workspace->pieces.size() == 1);
+    std::vector<std::vector<double>> values;
+    for (const WorkspaceSample& sample : workspace->pieces[0].samples) {
+        values.push_back(sample.values);
+        REQUIRE(sample.found);
+        CHECK(norm(sample.markers[0] - tip_under(model, task, sample.values)) < 2e-6);
+    }
+    REQUIRE(values.size() == 9);
+    CHECK(values.front() == std::vector<double>{0.85, 0.9});
+    CHECK(values[2] == std::vector<double>{0.85, 1});
+    CHECK(values[6] == std::vector<double>{1, 0.9});
+    CHECK(values.back() == std::vector<double>{1, 1});
+}
+
+TEST_CASE("more than five actuators without samples in between are refused") {
+    InverseTask task;
+    task.inputs.resize(6);
+    CHECK(check_samples(task, {.side = 9, .between = 1}));
+    const Status refused = check_samples(task, {.side = 9, .between = 0});
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().cause == Cause::input);
+    task.inputs.resize(5);
+    CHECK(check_samples(task, {.side = 9, .between = 0}));
+}
+
 TEST_CASE("a resumed search gives the same bits") {
     const Model model = made(bar(2));
     const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}});
@@ -91,7 +133,8 @@ TEST_CASE("a resumed search gives the same bits") {
 }
 
 TEST_CASE("a piece is unchanged by serialisation, and damaged bytes are an error") {
-    const WorkspacePiece piece{1, 2, {{{0.9, 1e-300}, true, {{1, 2, 3}}, {0.1}, {}}, {{0.8, 2}, false, {}, {}, {}}}};
+    const WorkspacePiece piece{
+        1, 2, {{{0.9, 1e-300}, true, {{1, 2, 3}}, {0.1}, {}}, {{0.8, 2}, false, {}, {}, {}}}, "it is too far"};
     const std::string bytes = piece_bytes(piece, "search 3");
     const auto read = piece_from_bytes(bytes, "search 3");
     REQUIRE(read);
@@ -102,6 +145,7 @@ TEST_CASE("a piece is unchanged by serialisation, and damaged bytes are an error
     CHECK(read->samples[0].markers == piece.samples[0].markers);
     CHECK(read->samples[0].tensions_N == piece.samples[0].tensions_N);
     CHECK_FALSE(read->samples[1].found);
+    CHECK(read->reason == "it is too far");
     CHECK_FALSE(piece_from_bytes(bytes, "search 4"));
     CHECK_FALSE(piece_from_bytes(bytes, "another 3"));
     for (std::size_t size = 0; size < bytes.size(); ++size)

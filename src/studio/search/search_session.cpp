@@ -142,7 +142,7 @@ Result<SearchResult> workspace_found(const Built& built, const sim::InverseTask&
     if (found->cancelled) return tl::unexpected(cancelled());
     const report::WorkspaceReport report{built.robot.name, built.model, task, *found};
     const Json summary = parse_json(report::workspace_json(report));
-    if (summary["found"] == 0) return failure("no equilibrium was found within these ranges");
+    if (summary["found"] == 0) return failure("{}", sim::inverse::why_nothing_is_found(*found));
     Json reach = Json::array();
     for (std::size_t m = 0; m < built.model.description().markers.size(); ++m) reach.push_back(reach_of(report, m));
     Json json = {{"summary", summary}, {"reach", reach}, {"csv", report::workspace_csv(report)}};
@@ -193,6 +193,7 @@ Status SearchSession::find_workspace(std::shared_ptr<const Built> built, sim::In
 }
 
 Status SearchSession::sweep(std::shared_ptr<const Built> built, SweepOrder order) {
+    if (Status status = check_axes(built->source, order); !status) return status;
     return begin("sweep", [built = std::move(built), order = std::move(order)](Progress& progress) {
         const Result<Sweep> found = run_sweep(built->source, order, progress);
         if (!found) return Result<SearchResult>(tl::unexpected(found.error()));

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "base/core/config.hpp"
 #include "presentation/report/units.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
@@ -117,6 +120,17 @@ bool changes_mesh(const std::string& key) {
         if (list == plain) return false;
     const bool actuator = list == "cable" || list == "chamber" || list == "spring";
     return !actuator || (key.find(".target.") == std::string::npos && last != "friction" && last != "stiffness");
+}
+
+Status check_axes(const RobotText& source, const SweepOrder& order) {
+    const auto document = config::parse(source.text, source.file);
+    if (!document) return tl::unexpected(document.error());
+    std::map<config::Place, std::string> places;
+    for (const SweepAxis& axis : order.axes) {
+        const auto [other, is_new] = places.emplace(config::place_of(*document, axis.key), axis.key);
+        if (!is_new) return input_error("sweep: {} sets what {} sets; only one of them may", axis.key, other->second);
+    }
+    return {};
 }
 
 Result<Sweep> run_sweep(const RobotText& source, const SweepOrder& order, Progress& progress) {

@@ -27,6 +27,9 @@ struct Sweep {
     std::vector<SweepRun> runs;  ///< the last axis changes first
 };
 
+/// Error: both axes set one number of the robot of `source`, however they write it; only one of the two would count.
+[[nodiscard]] Status check_axes(const RobotText& source, const SweepOrder& order);
+
 /// Runs the robot of `source` with every combination of values, each from rest. The mesh is reused if no key changes
 /// it. Errors: no combination has an equilibrium, with the reason for the first one; cancelled.
 [[nodiscard]] Result<Sweep> run_sweep(const RobotText& source, const SweepOrder& order, Progress& progress);

@@ -43,6 +43,15 @@ double simulated_tension(const std::vector<std::string>& assignments) {
 
 }  // namespace
 
+TEST_CASE("two axes that set one number, however they write it, are refused") {
+    const SweepAxis by_name{"cable.flexor.friction", "", {0, 0.5}}, by_index{"cable[0].friction", "", {0.1, 0.2}};
+    const Status refused = check_axes(source(), {{by_name, by_index}});
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message ==
+          "sweep: cable[0].friction sets what cable.flexor.friction sets; only one of them may");
+    CHECK(check_axes(source(), {{by_name, {"material.soft.youngs_modulus", "MPa", {1}}}}));
+}
+
 TEST_CASE("each run of a sweep is the program with --set, and the tension is proportional to the modulus") {
     const SweepOrder order{{{"material.soft.youngs_modulus", "MPa", {1, 2, 4}}}};
     const auto sweep = run_sweep(source(), order, unwatched);
