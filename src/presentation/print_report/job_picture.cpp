@@ -67,6 +67,7 @@ Result<Views> look(const job::Archive& archive, int most_shown) {
     const job::Manifest& m = archive.manifest();
     Views views;
     views.colours = material_colours(m);
+    job::Image image;
     const int count = static_cast<int>(m.layers.size()), shown_count = std::min(most_shown, count);
     for (int i = 0; i < shown_count; ++i) views.numbers.push_back(static_cast<int>((i + 0.5) * count / shown_count));
     for (int k = 0; k < count; ++k) {
@@ -74,9 +75,8 @@ Result<Views> look(const job::Archive& archive, int most_shown) {
         const bool shown = std::find(views.numbers.begin(), views.numbers.end(), k) != views.numbers.end();
         if (shown) views.layers.emplace_back();
         for (const job::LayerImage& entry : m.layers[static_cast<std::size_t>(k)].images) {
-            const auto image = archive.image(entry.file);
-            if (!image) return tl::unexpected(image.error());
-            slice::RunImage runs = slice::RunImage::from_image(*image);
+            if (Status status = archive.image(entry.file, image); !status) return tl::unexpected(status.error());
+            slice::RunImage runs = slice::RunImage::from_image(image);
             grow(views.extent, runs);
             columns[static_cast<std::size_t>(entry.material)] = column_light(runs);
             if (shown) views.layers.back().push_back({entry.material, std::move(runs)});

@@ -110,10 +110,16 @@ Result<std::string> Archive::file(const std::string& file) const {
 }
 
 Result<Image> Archive::image(const std::string& file) const {
+    Image found;
+    if (Status status = image(file, found); !status) return tl::unexpected(status.error());
+    return found;
+}
+
+Status Archive::image(const std::string& file, Image& into) const {
     const auto png = this->file(file);
     if (!png) return tl::unexpected(png.error());
     const PngSize size{state_->manifest.width_px, state_->manifest.height_px};
-    return decode_png(*png, size, state_->path + ": " + file);
+    return decode_png(*png, size, state_->path + ": " + file, into);
 }
 
 bool is_job(const std::filesystem::path& path) {

@@ -53,13 +53,13 @@ std::string image_name(Format format, const std::string& prefix, std::size_t lay
 Result<std::vector<ImageAreas>> layer_areas(const Archive& archive, int material, const Progress& progress) {
     const Manifest& m = archive.manifest();
     std::vector<ImageAreas> areas(m.layers.size());
+    Image image;
     for (std::size_t k = 0; k < m.layers.size(); ++k) {
         if (progress.cancelled()) return cancelled();
         for (const LayerImage& layer : m.layers[k].images) {
             if (layer.material != material) continue;
-            const Result<Image> image = archive.image(layer.file);
-            if (!image) return tl::unexpected(image.error());
-            areas[k] = areas_of(*image);
+            if (Status status = archive.image(layer.file, image); !status) return tl::unexpected(status.error());
+            areas[k] = areas_of(image);
         }
     }
     return areas;

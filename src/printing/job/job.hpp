@@ -167,6 +167,8 @@ public:
     [[nodiscard]] Result<std::string> file(const std::string& file) const;
     /// Decodes an image; its size is that of the manifest.
     [[nodiscard]] Result<Image> image(const std::string& file) const;
+    /// The same into an image that is there, whose memory is used again: for one image after the other.
+    [[nodiscard]] Status image(const std::string& file, Image& into) const;
 
 private:
     struct State;

@@ -28,6 +28,10 @@ inline constexpr std::size_t png_head_bytes = 29;
 /// Decodes; the size must be `expected`, which the caller has accepted. Memory is allocated only if the file is long
 /// enough to hold that many pixels at deflate's maximum ratio.
 [[nodiscard]] Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, std::string_view where);
+/// The same into an image that is there, whose memory is used again: for many images of one size. After an error its
+/// content is anything.
+[[nodiscard]] Status decode_png(std::string_view png, const PngSize& expected, std::string_view where,
+                                slice::Image& image);
 
 /// The same for PNG images of any kind (colours become grey, transparent pixels dark); at most 2^28 pixels.
 [[nodiscard]] Result<PngSize> any_png_size(std::string_view png, std::string_view where);

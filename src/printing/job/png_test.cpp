@@ -36,6 +36,20 @@ TEST_CASE("images are read back as written, from one pixel to a full screen") {
     }
 }
 
+TEST_CASE("an image that was used before, of another size and filled, ends as a new one would") {
+    Image image = pattern(70, 50);
+    for (const auto& [width, height] : {std::pair{30, 20}, {100, 90}, {1, 1}, {100, 90}}) {
+        const Image wanted = pattern(width, height);
+        REQUIRE(decode_png(encode_png(wanted), {width, height}, "x", image));
+        CHECK(image == wanted);
+    }
+    std::string damaged = encode_png(pattern(100, 90));
+    damaged[damaged.size() / 2] ^= 0x40;
+    CHECK_FALSE(decode_png(damaged, {100, 90}, "x", image));
+    REQUIRE(decode_png(encode_png(pattern(30, 20)), {30, 20}, "x", image));
+    CHECK(image == pattern(30, 20));
+}
+
 TEST_CASE("a blank full-screen image takes under 2,300 bytes") {
     const Image blank{1920, 1080, std::vector<std::uint8_t>(1920 * 1080)};
     CHECK(encode_png(blank).size() < 2300);

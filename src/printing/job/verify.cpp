@@ -63,14 +63,14 @@ Status verify_images(const Archive& archive, bool corrected, const std::string& 
     Progress& told = progress != nullptr ? *progress : silent;
     const Manifest& m = archive.manifest();
     const double pixel_mm2 = m.pixel_um * m.pixel_um / 1e6;
+    Image image;  // one for all: an allocator that gives memory back would fetch and clear its megabytes for each
     for (std::size_t k = 0; k < m.layers.size(); ++k) {
         told.advance("images", static_cast<double>(k) / static_cast<double>(m.layers.size()));
         if (told.cancelled()) return cancelled();
         std::vector<slice::RunImage> seen;
         for (const LayerImage& entry : m.layers[k].images) {
-            const auto image = archive.image(entry.file);
-            if (!image) return tl::unexpected(image.error());
-            seen.push_back(slice::RunImage::from_image(*image));
+            if (Status status = archive.image(entry.file, image); !status) return status;
+            seen.push_back(slice::RunImage::from_image(image));
             const double area = static_cast<double>(seen.back().value_sum()) / 255 * pixel_mm2;
             if (!corrected && std::fabs(area - entry.area_mm2) > 1e-6 * (area + pixel_mm2))
                 return input_error("{}: {}: its pixels hold {:.10g} mm^2, the manifest says {:.10g}", path, entry.file,
