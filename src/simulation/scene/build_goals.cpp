@@ -180,9 +180,8 @@ std::vector<std::string> notes_on_goals(const Robot& robot, const mesh::TetMesh&
     for (const GoalSpec& goal : robot.goals) {
         if (!goal.default_tolerance || !(goal.tolerance > most_share * size_m)) continue;
         notes.push_back(
-            fmt::format("goal \"{}\" gives no tolerance: that of 0.1 length_unit is {:.3g} mm, {:.3g} % of the robot's "
-                        "size, and all that is nearer counts as reached; a thousandth of the size, tolerance = "
-                        "\"{:.1g} mm\", is usual",
+            fmt::format("goal \"{}\" has no tolerance, and the default, 0.1 length_unit, is {:.3g} mm: {:.3g} % of the "
+                        "robot's size. Everything nearer counts as reached; give one, as tolerance = \"{:.1g} mm\"",
                         goal.name, 1e3 * goal.tolerance, 100 * goal.tolerance / size_m, size_m));
     }
     return notes;

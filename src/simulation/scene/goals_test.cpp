@@ -121,8 +121,8 @@ marker = [{ name = "tip", point = [0.04, 0.005, 0.005] }]
     const auto found = notes(small + wanted + " }]\n");
     REQUIRE(found.size() == 1);
     CHECK(found[0] ==
-          "goal \"reach\" gives no tolerance: that of 0.1 length_unit is 100 mm, 236 % of the robot's size, and all "
-          "that is nearer counts as reached; a thousandth of the size, tolerance = \"0.04 mm\", is usual");
+          "goal \"reach\" has no tolerance, and the default, 0.1 length_unit, is 100 mm: 236 % of the robot's size. "
+          "Everything nearer counts as reached; give one, as tolerance = \"0.04 mm\"");
     CHECK(notes(small + wanted + ", tolerance = \"100 mm\" }]\n").empty());
 }
 
