@@ -29,7 +29,6 @@
 #include "printing/operate/proved_job.hpp"
 #include "printing/plan/safe_stop.hpp"
 #include "robot/description/unused.hpp"
-#include "simulation/scene/build_goals.hpp"
 #include "simulation/scene/scene.hpp"
 
 namespace pliant::app {
@@ -60,7 +59,7 @@ Result<std::string> check_robot(const std::string& file, const std::vector<std::
     for (const std::string& note : robot.notes) text += "\n  note: " + note;
     for (const std::string& note : robot::unused_materials(robot)) text += "\n  note: " + note;
     for (const std::string& note : scene->mesh_notes) text += "\n  note: " + note;
-    for (const std::string& note : robot::notes_on_goals(robot, scene->model.mesh())) text += "\n  note: " + note;
+    for (const std::string& note : scene->model.description().notes) text += "\n  note: " + note;
     return text;
 }
 

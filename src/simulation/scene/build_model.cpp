@@ -1,6 +1,7 @@
 // Attaches what the robot file names by position (boxes, points, paths) to nodes of the mesh.
 #include "simulation/scene/build_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -79,6 +80,19 @@ Status check_free_motion(const Robot& robot, sim::Description& description) {
     return {};
 }
 
+/// A support's box that was drawn too thick holds all of a thin body.
+void note_what_is_held(sim::Description& description) {
+    const std::vector<int>& nodes = description.mesh.nodes;
+    std::vector<char> held(description.mesh.points.size(), 0);
+    for (const sim::Support& support : description.supports) {
+        if (!support.directions.empty()) continue;
+        for (const int node : support.nodes) held[static_cast<std::size_t>(node)] = 1;
+    }
+    const auto is_held = [&](int node) { return held[static_cast<std::size_t>(node)] != 0; };
+    if (!nodes.empty() && std::ranges::all_of(nodes, is_held))
+        description.notes.emplace_back("the supports hold every node of the bodies: nothing in them can bend or move");
+}
+
 /// The model knows lines at most.
 Error in_file(const std::string& file, const Error& error) {
     std::vector<Diagnostic> problems = error.problems;
@@ -133,6 +147,7 @@ Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mes
             description.notes.push_back(std::move(note));
     }
     for (std::string& note : notes_on_goals(robot, description.mesh)) description.notes.push_back(std::move(note));
+    note_what_is_held(description);
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
     return std::move(description);
 }

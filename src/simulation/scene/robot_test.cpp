@@ -732,6 +732,22 @@ TEST_CASE("a guide point just outside the mesh is carried and counted, one farth
     CHECK(build_text(good).model.description().notes.empty());
 }
 
+TEST_CASE("a note tells where supports hold every node of the bodies") {
+    const std::string all = "fixed = [{ name = \"all\", box = [[-1, -1, -1], [9, 9, 9]] }]\n";
+    const std::string bar = R"(
+length_unit = "mm"
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.4 }
+body = [{ name = "sheet", material = "soft", geometry = { box = [[0, 0, 0], [8, 8, 1]] } }]
+mesh = { size = "3 mm", order = 1 }
+)";
+    const Built built = build_text(bar + all);
+    const auto& notes = built.model.description().notes;
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0] == "the supports hold every node of the bodies: nothing in them can bend or move");
+    const std::string bottom = "fixed = [{ name = \"bottom\", box = [[-1, -1, -1], [9, 9, 0.2]] }]\n";
+    CHECK(build_text(bar + bottom).model.description().notes.empty());
+}
+
 TEST_CASE("a support along a line is refused at rest, and allowed as a pendulum in dynamics") {
     const std::string hinge = with("box = [[0, 0, 0], [0, 10, 10]]", "box = [[0, 0, 0], [0, 10, 0]]");
     check_problem(hinge, "bar.toml: body \"left\" can turn freely about the line through (0, ");
