@@ -80,9 +80,11 @@ Status check_columns(const CsvTable& table, const std::vector<std::string>& know
         if (std::ranges::count(names, name) > 0)
             return input_error_at(table.file, table.header_line, "there are two columns \"{}\"", name);
         names.push_back(name);
-        if (name != column && csv_unit(column).empty())
+        const auto is_known = [&](std::string_view some) { return std::ranges::count(known, some) > 0; };
+        const std::string before_bracket(trimmed(std::string_view(column).substr(0, column.find_last_of("(["))));
+        if ((name != column && csv_unit(column).empty()) || (!is_known(name) && is_known(before_bracket)))
             return input_error_at(table.file, table.header_line, "column \"{}\": its brackets hold no unit", column);
-        if (std::ranges::count(known, name) > 0) continue;
+        if (is_known(name)) continue;
         if (const std::string bracketed = with_unit_in_brackets(name, known); !bracketed.empty())
             return input_error_at(table.file, table.header_line,
                                   "column \"{}\" has no meaning in a path; did you mean \"{}\"?", column, bracketed);

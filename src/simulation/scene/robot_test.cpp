@@ -734,7 +734,7 @@ TEST_CASE("a guide point just outside the mesh is carried and counted, one farth
 
 TEST_CASE("a note tells where supports hold every node of the bodies") {
     const std::string all = "fixed = [{ name = \"all\", box = [[-1, -1, -1], [9, 9, 9]] }]\n";
-    const std::string bar = R"(
+    const std::string bar = R"(name = "sheet"
 length_unit = "mm"
 material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.4 }
 body = [{ name = "sheet", material = "soft", geometry = { box = [[0, 0, 0], [8, 8, 1]] } }]
