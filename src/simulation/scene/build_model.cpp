@@ -80,8 +80,10 @@ Status check_free_motion(const Robot& robot, sim::Description& description) {
     return {};
 }
 
-/// A support's box that was drawn too thick holds all of a thin body.
+/// A support's box that was drawn too thick holds all of a thin body. Where there are objects the bodies may be no more
+/// than their base.
 void note_what_is_held(sim::Description& description) {
+    if (!description.objects.empty()) return;
     const std::vector<int>& nodes = description.mesh.nodes;
     std::vector<char> held(description.mesh.points.size(), 0);
     for (const sim::Support& support : description.supports) {
