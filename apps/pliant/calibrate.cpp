@@ -9,13 +9,13 @@
 
 #include "../usage.hpp"
 #include "base/core/files.hpp"
+#include "base/core/part_of_work.hpp"
 #include "base/core/units.hpp"
 #include "command.hpp"
 #include "output_option.hpp"
 #include "presentation/draw/plot.hpp"
 #include "simulation/calibrate/elongation.hpp"
 #include "simulation/calibrate/fit.hpp"
-#include "simulation/calibrate/part_of_work.hpp"
 #include "simulation/calibrate/ratio.hpp"
 
 namespace pliant::app {
@@ -130,7 +130,7 @@ Status run_ratio(RatioCommand& command) {
     RatioRuns runs;
     for (std::size_t i = 0; i < command.interfaces.size(); ++i) {
         command.options.interface = command.interfaces[i];
-        auto part = calibrate::equal_part(*progress, "ratio", i, command.interfaces.size());
+        auto part = equal_part(*progress, "ratio", i, command.interfaces.size());
         auto result = calibrate::calibrate_ratio(command.options, part);
         if (!result) return tl::unexpected(result.error());
         runs.emplace_back(command.options, std::move(*result));
@@ -264,7 +264,7 @@ Status run_elongation(const ElongationCommand& command) {
     if (!rows) return tl::unexpected(rows.error());
     const auto progress = terminal_progress(command.output);
     for (std::size_t i = 0; command.match && i < rows->size(); ++i) {
-        auto part = calibrate::equal_part(*progress, "match", i, rows->size());
+        auto part = equal_part(*progress, "match", i, rows->size());
         const Result<double> match = calibrate::match_shape_parameter((*rows)[i].test, part);
         if (!match) return tl::unexpected(match.error());
         (*rows)[i].shape_parameter = *match;

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/json.hpp"
+#include "base/core/part_of_work.hpp"
 #include "base/linalg/dense.hpp"
-#include "simulation/calibrate/part_of_work.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
 

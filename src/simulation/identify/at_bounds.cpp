@@ -33,7 +33,7 @@ AtBounds at_bounds(const MatrixXd& J, const VectorXd& r, const std::vector<End>&
     AtBounds result{zero, zero, zero, {}};
     if (std::ranges::all_of(ends, [](const End& end) { return end.inward == 0; })) return result;
     const std::vector<bool> none(ends.size(), false);
-    const std::vector<bool> matters = confidence(J, r, none, negligible, groups).matters;
+    const std::vector<bool> matters = which_matter(J, negligible);
     const MatrixXd inside = columns(J, ends, matters, false), held = columns(J, ends, matters, true);
     const VectorXd step = linalg::pseudo_inverse(inside + held) * -r;
     const Confidence known = confidence(J, r + J * step, none, negligible, groups);

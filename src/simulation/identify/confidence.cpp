@@ -84,14 +84,21 @@ void add_group(std::vector<std::size_t> group, std::vector<std::vector<std::size
 
 }  // namespace
 
+std::vector<bool> which_matter(const MatrixXd& J, double negligible) {
+    std::vector<bool> matters;
+    for (Index j = 0; j < J.cols(); ++j) matters.push_back(J.col(j).norm() > negligible);
+    return matters;
+}
+
 Confidence confidence(const MatrixXd& J, const VectorXd& r, const std::vector<bool>& held, double negligible,
                       const std::vector<int>& groups) {
     const Index count = J.cols();
-    Confidence result{VectorXd::Constant(count, none), MatrixXd::Constant(count, count, none), {}, {}, {}};
+    Confidence result{
+        VectorXd::Constant(count, none), MatrixXd::Constant(count, count, none), which_matter(J, negligible), {}, {}};
     std::vector<std::size_t> known;
     for (Index j = 0; j < count; ++j) {
-        result.matters.push_back(J.col(j).norm() > negligible);
-        if (result.matters.back() && !held[static_cast<std::size_t>(j)]) known.push_back(static_cast<std::size_t>(j));
+        const auto k = static_cast<std::size_t>(j);
+        if (result.matters[k] && !held[k]) known.push_back(k);
     }
     if (known.empty()) return result;
     const auto size = static_cast<Index>(known.size());

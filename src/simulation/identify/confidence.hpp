@@ -18,6 +18,9 @@ struct Confidence {
     std::set<int> unclear;
 };
 
+/// (unknowns) whether a change of 1 in u changes the residuals by more than `negligible` of their units.
+[[nodiscard]] std::vector<bool> which_matter(const Eigen::MatrixXd& J, double negligible);
+
 /// For residuals r and their derivative J (residuals, unknowns) at the solution. `held`: unknowns at their bounds,
 /// taken as known. An unknown does not matter if a change of 1 in u changes the residuals by less than `negligible` of
 /// their units; a residual that no unknown changes by that much is not counted. Unknowns are mixed if their correlation

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/core/config.hpp"
+#include "base/core/part_of_work.hpp"
 #include "presentation/report/units.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
@@ -20,21 +21,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-/// Progress of a part of the whole work.
-class Part final : public Progress {
-public:
-    Part(Progress& whole, std::size_t index, std::size_t count) : whole_(whole), index_(index), count_(count) {}
-    void advance(std::string_view, double fraction) override {
-        whole_.advance(fmt::format("{} of {}", index_ + 1, count_),
-                       (static_cast<double>(index_) + fraction) / static_cast<double>(count_));
-    }
-    [[nodiscard]] bool cancelled() const override { return whole_.cancelled(); }
-
-private:
-    Progress& whole_;
-    std::size_t index_, count_;
-};
 
 /// All results of a state, and their names.
 struct Row {
@@ -141,7 +127,7 @@ Result<Sweep> run_sweep(const RobotText& source, const SweepOrder& order, Progre
     std::optional<Error> first;
     Sweep sweep;
     for (std::size_t k = 0; k < all.size(); ++k) {
-        Part part(progress, k, all.size());
+        auto part = equal_part(progress, fmt::format("{} of {}", k + 1, all.size()), k, all.size());
         part.advance("", 0);
         std::vector<std::string> assignments;
         if (source.accuracy == Accuracy::preview) assignments.emplace_back("mesh.order=1");

@@ -1,25 +1,19 @@
 #include "studio/server/based_text.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <variant>
 
 #include "base/core/config.hpp"
+#include "robot/file/robot_document.hpp"
 #include "studio/server/json_toml.hpp"
 
 namespace pliant::studio {
 namespace {
 
-const config::Value* entry_of(const config::Document& document, std::string_view key) {
-    for (const auto& [name, value] : std::get<config::Table>(document.root.data))
-        if (name == key) return &value;
-    return nullptr;
-}
-
 /// The file that the text stands on; none: it is a robot of its own, or no TOML.
 std::optional<std::string> base_of(const std::optional<config::Document>& document) {
-    const config::Value* base = document ? entry_of(*document, "robot") : nullptr;
+    const config::Value* base = document ? robot::entry_of(document->root, "robot") : nullptr;
     const auto* name = base != nullptr ? std::get_if<std::string>(&base->data) : nullptr;
     return name != nullptr ? std::optional(*name) : std::nullopt;
 }
@@ -40,7 +34,7 @@ Result<std::string> with_robot_value(std::string_view text, std::string_view key
     if (is_of_program(key) || !base_of(document)) return config::with_value(text, key, value);
     const std::string begin = std::string(key) + "=";
     nlohmann::json all = nlohmann::json::array();
-    const config::Value* set = entry_of(*document, "set");
+    const config::Value* set = robot::entry_of(document->root, "set");
     const auto* list = set != nullptr ? std::get_if<config::Array>(&set->data) : nullptr;
     if (list != nullptr) {
         for (const config::Value& one : *list) {
