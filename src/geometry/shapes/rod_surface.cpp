@@ -5,28 +5,10 @@
 #include <numbers>
 #include <utility>
 
-#include "base/core/rotation.hpp"
+#include "geometry/shapes/single_shape.hpp"
 
 namespace pliant::mesh {
 namespace {
-
-std::optional<CylinderSolid> cylinder_of(const Solid& solid) {
-    if (const auto* cylinder = std::get_if<CylinderSolid>(&solid->shape)) return *cylinder;
-    if (const auto* moved = std::get_if<TranslatedSolid>(&solid->shape)) {
-        std::optional<CylinderSolid> inner = cylinder_of(moved->of);
-        if (inner) inner = CylinderSolid{inner->from + moved->offset, inner->to + moved->offset, inner->radius};
-        return inner;
-    }
-    if (const auto* around = std::get_if<RotatedSolid>(&solid->shape)) {
-        std::optional<CylinderSolid> inner = cylinder_of(around->of);
-        const auto placed = [&](const Vec3& p) {
-            return turned(p - around->center, unit(around->axis), around->angle_rad, around->center);
-        };
-        if (inner) inner = CylinderSolid{placed(inner->from), placed(inner->to), inner->radius};
-        return inner;
-    }
-    return std::nullopt;
-}
 
 /// Two unit vectors across an axis, the second a quarter turn from the first.
 std::pair<Vec3, Vec3> across(const Vec3& axis) {
@@ -46,7 +28,7 @@ int sides_for(double radius, double tolerance) {
 }  // namespace
 
 std::optional<TriMesh> rod_surface(const Solid& solid, double tolerance) {
-    const std::optional<CylinderSolid> rod = cylinder_of(solid);
+    const std::optional<CylinderSolid> rod = single_cylinder(solid);
     if (!rod) return std::nullopt;
     const int n = sides_for(rod->radius, tolerance);
     const auto [u, v] = across(rod->to - rod->from);

@@ -4,12 +4,14 @@
 #include <numbers>
 #include <span>
 
+#include "geometry/shapes/sphere_surface.hpp"
 #include "simulation/run/describe.hpp"
 
 namespace pliant::report {
 namespace {
 
-constexpr double disc_share = 0.75;  // radius of a plane's disc over the diagonal of the robot's motion
+constexpr double sphere_share = 1e-3;  // largest deviation of a drawn sphere over its radius
+constexpr double disc_share = 0.75;    // radius of a plane's disc over the diagonal of the robot's motion
 
 Box3 motion_box(const sim::Trajectory& result) {
     Box3 box;
@@ -21,6 +23,11 @@ Box3 motion_box(const sim::Trajectory& result) {
 
 Obstacle drawn(const sim::contact::Obstacle& body, const Box3& motion) {
     if (const auto* surface = std::get_if<mesh::TriMesh>(&body.shape)) return {body.name, *surface, false, {}};
+    if (const auto* sphere = std::get_if<sim::contact::Sphere>(&body.shape))
+        return {body.name,
+                mesh::sphere_surface({sphere->center, sphere->radius_m}, sphere_share * sphere->radius_m),
+                false,
+                {}};
     const auto& half = std::get<sim::contact::HalfSpace>(body.shape);
     const Vec3 center = motion.center();
     const Vec3 foot = center - dot(center - half.point, half.normal) * half.normal;

@@ -23,20 +23,22 @@ Stencil moved(const Stencil& x, const Stencil& p, double t) {
 
 }  // namespace
 
-double largest_step(Features features, const Stencil& x, const Stencil& dx, double keep, double limit) {
+double largest_step(Features features, const Stencil& x, const Stencil& dx, double keep, double limit,
+                    double radius_m) {
     constexpr int most_looks = 1000;
-    return advance(features, x, dx, keep, limit, most_looks).step;
+    return advance(features, x, dx, keep, limit, most_looks, radius_m).step;
 }
 
-Advance advance(Features features, const Stencil& x, const Stencil& dx, double keep, double limit, int most_looks) {
+Advance advance(Features features, const Stencil& x, const Stencil& dx, double keep, double limit, int most_looks,
+                double radius_m) {
     Stencil p = dx;
     const Vec3 mean = 0.25 * (dx[0] + dx[1] + dx[2] + dx[3]);
     for (Vec3& v : p) v -= mean;
     const double speed = closing_speed(features, p);
     if (speed == 0) return {limit, true};
     // Most pairs are far apart compared with their motion.
-    if (0.9 * (1 - keep) * distance_bound(features, x) >= speed * limit) return {limit, true};
-    const double start = distance(features, x), gap = keep * start;
+    if (0.9 * (1 - keep) * (distance_bound(features, x) - radius_m) >= speed * limit) return {limit, true};
+    const double start = distance(features, x) - radius_m, gap = keep * start;
     if (!(start > 0)) return {0, true};
 
     // The distance cannot fall to `gap` within this step; advance by nine tenths of it and check again.
@@ -44,7 +46,7 @@ Advance advance(Features features, const Stencil& x, const Stencil& dx, double k
     double t = 0, ahead = 0.9 * (start - gap) / speed;
     for (int look = 0; look < most_looks; ++look) {
         if (t + ahead >= limit) return {limit, true};
-        const double now = distance(features, moved(x, p, t + ahead));
+        const double now = distance(features, moved(x, p, t + ahead)) - radius_m;
         if (now < gap) return {t, true};  // can only be due to rounding
         t += ahead;
         if (now - gap <= near_enough * gap) return {t, true};

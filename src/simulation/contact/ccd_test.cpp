@@ -32,6 +32,15 @@ TEST_CASE("a point that falls on a triangle stops at the distance share it must 
     CHECK(largest_step(Features::point_triangle, touching, dx, 0.1, 1) == 0);
 }
 
+TEST_CASE("a sphere stops at the distance of its surface") {
+    const Stencil x{{{0.2, 0.2, 1.5}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, dx{{{0, 0, -2}, {}, {}, {}}};
+    CHECK(largest_step(Features::point_triangle, x, dx, 0.1, 1, 0.5) == near(0.45, {.relative = 2e-3}));
+    const Stencil aside{{{3, 0, -2}, {}, {}, {}}};  // passes the corner at (1, 0, 0)
+    CHECK(largest_step(Features::point_triangle, x, aside, 0.1, 1, 0.2) == 1);
+    CHECK(largest_step(Features::point_triangle, x, aside, 0.1, 1, 1.2) < 0.3);
+    CHECK(largest_step(Features::point_triangle, x, dx, 0.1, 1, 1.5) == 0);
+}
+
 TEST_CASE("a common motion of both features, however large, does not limit the step") {
     const Stencil x{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.1}, {0, 1, 0.1}}};
     const Vec3 far{10, -20, 30};

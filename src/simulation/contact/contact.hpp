@@ -40,11 +40,18 @@ struct HalfSpace {
     Vec3 point, normal;
 };
 
+/// All points within `radius_m` of the centre. Has one node, the centre.
+struct Sphere {
+    Vec3 center;
+    double radius_m = 0;
+};
+
 struct Obstacle {
     std::string name;
-    std::variant<mesh::TriMesh, HalfSpace> shape;  ///< metres, at its rest place; a mesh has one node per point
-    double friction = 0;                           ///< coefficient μ against the robot
-    Vec3 start_m{};                                ///< how far it has moved from there at the start
+    /// Metres, at its rest place; a mesh has one node per point.
+    std::variant<mesh::TriMesh, HalfSpace, Sphere> shape;
+    double friction = 0;           ///< coefficient μ against the robot
+    Vec3 start_m{};                ///< how far it has moved from there at the start
     int line = 0, start_line = 0;  ///< of the file that draws it and moves it to its start, for errors; 0: unknown
 };
 
@@ -97,8 +104,9 @@ struct Crossing {
 };
 
 /// Immutable, except for a cache of what was near at the last states, which saves time and does not change a bit. A
-/// pair acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries no force. For
-/// obstacles the reach is min(distance_m, its distance at rest), and closed ones and half-spaces are inset by
+/// pair acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries no force; of
+/// pieces that are not connected half the gap between them at rest counts, wherever they slide on each other. For
+/// obstacles the reach is min(distance_m, its distance at rest), and all but open ones are inset by
 /// resting_share of distance_m (obstacle_inset.hpp), so that what presses on them rests where they are drawn. Excluded
 /// are features that share a node or belong together at rest (belonging.hpp: bonded bodies, slivers), and pairs of
 /// obstacles.
@@ -187,6 +195,10 @@ private:
         int node, obstacle;
         Vec3 normal;
     };
+    struct Ball {
+        int node, obstacle;
+        double radius_m;  ///< as it acts: drawn in
+    };
     class Search;  ///< one sweep over the features whose boxes overlap: contact_search.hpp
     class Nearby;  ///< the result of such a sweep, valid while nothing moves far
     struct Memory;
@@ -238,7 +250,12 @@ private:
     [[nodiscard]] Status check_nothing_is_nested(std::span<const double> x, When when) const;
     /// `a`, `b`: as part_of(), or -1 for obstacles.
     [[nodiscard]] bool parts_are_joined(int a, int b) const;
-    [[nodiscard]] double reach(int obstacle, double apart_m) const;
+    /// Of a pair with these nodes that is `apart_m` apart at rest.
+    [[nodiscard]] double reach(std::span<const int, 4> nodes, double apart_m) const;
+    /// The connected piece of the robot's surface that a node is on, or the obstacle that it belongs to.
+    [[nodiscard]] int piece_of(int node) const { return piece_of_node_[node]; }
+    void number_pieces(const Surface& robot);
+    void measure_gaps();
     /// Of a point and the triangles of a flat face the nearest pair alone, the first of several. The face has one
     /// reach, that of its distance at rest. `within_reach`: only pairs on which forces act.
     [[nodiscard]] Pairs once_per_face(Pairs pairs, std::span<const double> x, bool within_reach) const;
@@ -258,19 +275,26 @@ private:
     [[nodiscard]] Pair make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2,
                                  std::int64_t flat_face) const;
     [[nodiscard]] Pairs search_pairs(std::span<const double> x) const;
-    /// `within_m`: 0 stands for the reach of each pair.
-    void find_planes(std::span<const double> x, double within_m, Pairs& pairs) const;
+    /// Obstacles without triangles: contact_exact.cpp. `within_m`: 0 stands for the reach of each pair.
+    void find_exact(std::span<const double> x, double within_m, Pairs& pairs) const;
     void find_planes(const Side& side, std::span<const double> x, double within_m, Pairs& pairs) const;
+    void find_balls(const Side& side, std::span<const double> x, double within_m, Pairs& pairs) const;
+    [[nodiscard]] double largest_exact_step(std::span<const double> x, std::span<const double> dx) const;
     void shorten_to_planes(const Side& side, std::span<const double> x, std::span<const double> dx, double& step) const;
-    [[nodiscard]] double largest_plane_step(std::span<const double> x, std::span<const double> dx) const;
+    void shorten_to_balls(const Side& side, std::span<const double> x, std::span<const double> dx, double& step) const;
+    /// Of the parts that planes and balls touch or hold at x, the last.
+    [[nodiscard]] std::optional<Touched> touched_by_exact(std::span<const double> x) const;
+    void note_touched(const Side& side, std::span<const double> x, std::optional<Touched>& touched) const;
     /// largest_step(), or where that is below `enough`, any other value below it.
     [[nodiscard]] double free_step(std::span<const double> x, std::span<const double> dx, double enough) const;
 
     Settings settings_;
     std::vector<Obstacle> obstacles_;
-    std::vector<double> drawn_in_m_;     ///< (obstacles)
-    std::vector<int> first_node_;        ///< (obstacles + 1)
-    std::vector<int> obstacle_of_node_;  ///< (nodes), -1 for the robot's
+    std::vector<double> drawn_in_m_;              ///< (obstacles)
+    std::vector<int> piece_of_node_;              ///< (nodes)
+    std::map<std::array<int, 2>, double> gap_m_;  ///< of two pieces at rest, the smaller number first, if near
+    std::vector<int> first_node_;                 ///< (obstacles + 1)
+    std::vector<int> obstacle_of_node_;           ///< (nodes), -1 for the robot's
     std::vector<RigidPart> rigid_;
     std::vector<Joined> joined_;
     std::vector<int> part_of_node_;  ///< (nodes) as part_of(); empty without rigid parts
@@ -283,6 +307,7 @@ private:
     std::vector<Side> parts_;                                             ///< (rigid parts)
     std::map<std::int64_t, std::vector<std::array<int, 3>>> flat_faces_;  ///< their triangles
     std::vector<Plane> planes_;
+    std::vector<Ball> balls_;
     std::shared_ptr<Memory> memory_;
 };
 

@@ -45,6 +45,11 @@ Status check_obstacle(const Obstacle& obstacle) {
             return input_error("obstacle \"{}\": the normal must be a direction other than zero", obstacle.name);
         return {};
     }
+    if (const auto* sphere = std::get_if<Sphere>(&obstacle.shape)) {
+        if (!is_finite(sphere->center) || !(sphere->radius_m > 0) || !std::isfinite(sphere->radius_m))
+            return input_error("obstacle \"{}\": a sphere needs a centre, and a radius above zero", obstacle.name);
+        return {};
+    }
     const auto& surface = std::get<mesh::TriMesh>(obstacle.shape);
     if (surface.triangles.empty()) return input_error("obstacle \"{}\": it has no triangles", obstacle.name);
     for (const Vec3& p : surface.points)
@@ -113,8 +118,10 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
     contact.seen_m_ = std::max(seen_edges * mean_edge(robot, rest), seen_distances * settings.distance_m);
     contact.make_sides(robot);
     contact.add_obstacles();
+    contact.number_pieces(robot);
     if (auto status = contact.check_beginning(); !status) return tl::unexpected(status.error());
     contact.draw_in_obstacles();
+    contact.measure_gaps();
     contact.memory_ = std::make_shared<Memory>();  // what has been noted of the obstacles was of those not drawn in
     return contact;
 }
@@ -170,6 +177,12 @@ void Contact::draw_in_obstacles() {
         drawn_in_m_[plane.obstacle] = depth;
         place(plane.node, node_at(rest_, plane.node) - depth * plane.normal);
     }
+    for (Ball& ball : balls_) {
+        // One that is thinner than that acts at the distance of the barrier, as small meshes do.
+        if (!(ball.radius_m > depth)) continue;
+        drawn_in_m_[ball.obstacle] = depth;
+        ball.radius_m -= depth;
+    }
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         const auto* surface = std::get_if<mesh::TriMesh>(&obstacles_[k].shape);
         const auto points = surface != nullptr ? inset(*surface, depth) : std::nullopt;
@@ -188,6 +201,9 @@ void Contact::add_obstacles() {
         if (const auto* plane = std::get_if<HalfSpace>(&obstacles_[k].shape)) {
             planes_.push_back({first, static_cast<int>(k), plane->normal / norm(plane->normal)});
             points = {plane->point};
+        } else if (const auto* sphere = std::get_if<Sphere>(&obstacles_[k].shape)) {
+            balls_.push_back({first, static_cast<int>(k), sphere->radius_m});
+            points = {sphere->center};
         } else {
             const auto& surface = std::get<mesh::TriMesh>(obstacles_[k].shape);
             for (const auto& t : surface.triangles) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});

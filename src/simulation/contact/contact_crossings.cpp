@@ -54,13 +54,7 @@ std::optional<Crossing> Contact::crossing_at_rest() const {
 }
 
 std::optional<Contact::Touched> Contact::obstacle_touched(std::span<const double> x) const {
-    std::optional<Touched> touched;
-    visit_moving_sides([&](const Side& side) {
-        for (const Plane& plane : planes_)
-            for (const int point : side.surface.points)
-                if (dot(plane.normal, node_at(x, point) - node_at(x, plane.node)) < -touching_m_)
-                    touched = {plane.obstacle, part_of(point)};
-    });
+    std::optional<Touched> touched = touched_by_exact(x);
     const Search search(*this, x, {}, touching_m_, Search::What::pairs, false);
     const auto moving = [&](int a, int b) { return part_of(obstacle_of_node_[a] < 0 ? a : b); };
     const auto test = [&](const Search::Candidate& c, std::optional<Touched>& found) {
@@ -89,10 +83,22 @@ std::string Contact::advice_on(const Touched& touched) const {
                 "{:.6g}, {:.6g}], or move the point",
                 0 - plane.normal.x, 0 - plane.normal.y, 0 - plane.normal.z);
     }
+    for (const Ball& ball : balls_) {
+        const auto is_inside = [&](int point) {
+            return norm(node_at(rest_, point) - node_at(rest_, ball.node)) <= ball.radius_m;
+        };
+        if (ball.obstacle == touched.obstacle && std::ranges::all_of(points, is_inside))
+            return "all of it lies inside the obstacle, which is solid: move it out";
+    }
     Box3 part, obstacle;
     for (const int point : points) part.add(node_at(rest_, point));
     const auto k = static_cast<std::size_t>(touched.obstacle);
     for (int node = first_node_[k]; node < first_node_[k + 1]; ++node) obstacle.add(node_at(rest_, node));
+    if (const auto* sphere = std::get_if<Sphere>(&obstacles_[k].shape)) {
+        const Vec3 corner{sphere->radius_m, sphere->radius_m, sphere->radius_m};
+        obstacle.add(sphere->center - corner);
+        obstacle.add(sphere->center + corner);
+    }
     const double times = obstacle.diagonal() / part.diagonal();
     const bool is_plane = std::holds_alternative<HalfSpace>(obstacles_[k].shape);
     return fmt::format("leave a gap{}{}", touched.part == 0 ? ", or hold the robot there" : "",

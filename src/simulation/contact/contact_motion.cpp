@@ -14,9 +14,6 @@
 namespace pliant::sim::contact {
 namespace {
 
-/// A tenth: share of its present distance that every pair keeps in a step.
-constexpr double kept_share = 0.1;
-
 constexpr int few_looks = 8;
 
 /// A clearance that answers fewer calls than this has cost more than it saved.
@@ -74,7 +71,7 @@ void Contact::note_clearance(std::span<const double> x) const {
     std::vector<Seen> all;
     for (const std::vector<Seen>& piece : search.run(std::vector<Seen>{}, look))
         all.insert(all.end(), piece.begin(), piece.end());
-    const auto reach_of = [&](const Seen& s) { return reach(obstacle_of(s.candidate.nodes), s.rest_m); };
+    const auto reach_of = [&](const Seen& s) { return reach(std::span(s.candidate.nodes).first<4>(), s.rest_m); };
     if (std::ranges::any_of(all, [&](const Seen& s) { return s.now_m <= reach_of(s); })) return wait_for_clearance();
     std::vector<Clearance::Side> sides;
     for (std::size_t k = 0; k < 2 + parts_.size(); ++k) sides.push_back({&side(k).surface, side(k).regions});
@@ -117,7 +114,7 @@ bool Contact::is_free(std::span<const double> x, std::span<const double> dx) con
 }
 
 double Contact::free_step(std::span<const double> x, std::span<const double> dx, double enough) const {
-    const double free = largest_plane_step(x, dx);
+    const double free = largest_exact_step(x, dx);
     if (free < enough || is_clear(x, dx)) return free;
     const double margin = kept_share * settings_.distance_m;
     std::atomic<bool> ended = false;
@@ -141,29 +138,11 @@ double Contact::free_step(std::span<const double> x, std::span<const double> dx,
 }
 
 bool Contact::meets(std::span<const double> x, std::span<const double> dx) const {
-    if (largest_plane_step(x, dx) < 1) return true;
+    if (largest_exact_step(x, dx) < 1) return true;
     if (is_clear(x, dx)) return false;
     // Distances at the start answer for this step as well as for later ones; the search along the step is slower.
     note_clearance(x);
     return !is_clear(x, dx) && !is_free(x, dx);
-}
-
-double Contact::largest_plane_step(std::span<const double> x, std::span<const double> dx) const {
-    double step = 1;
-    visit_moving_sides([&](const Side& side) { shorten_to_planes(side, x, dx, step); });
-    return step;
-}
-
-void Contact::shorten_to_planes(const Side& side, std::span<const double> x, std::span<const double> dx,
-                                double& step) const {
-    for (const Plane& plane : planes_) {
-        for (const int point : side.surface.points) {
-            const double now = dot(plane.normal, node_at(x, point) - node_at(x, plane.node));
-            const double closing = dot(plane.normal, node_at(dx, plane.node) - node_at(dx, point));
-            if (now - closing < kept_share * now)
-                step = std::min(step, (1 - kept_share) * std::max(now, 0.0) / closing);
-        }
-    }
 }
 
 }  // namespace pliant::sim::contact

@@ -1,6 +1,7 @@
 // Refuses solids that begin inside one another. Surfaces that do not cross are either apart or nested, so one point of
 // each connected piece decides.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/core/boxes.hpp"
@@ -65,6 +66,16 @@ private:
     std::optional<mesh::TriangleTree> tree_;
 };
 
+/// A tetrahedron in a sphere stands for it: what the sphere holds was found to touch it, so the sphere can only be
+/// held.
+mesh::TriMesh inscribed(const Vec3& center, double radius_m) {
+    const double s = radius_m / std::sqrt(3);
+    mesh::TriMesh surface{{{s, s, s}, {-s, s, -s}, {s, -s, -s}, {-s, -s, s}},
+                          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+    for (Vec3& p : surface.points) p += center;
+    return surface;
+}
+
 }  // namespace
 
 Status Contact::check_nothing_is_nested(std::span<const double> x, When when) const {
@@ -81,11 +92,17 @@ Status Contact::check_nothing_is_nested(std::span<const double> x, When when) co
     });
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         const Obstacle& obstacle = obstacles_[k];
-        const auto* drawn = std::get_if<mesh::TriMesh>(&obstacle.shape);
-        if (drawn == nullptr || !mesh::check_closed(*drawn)) continue;
-        mesh::TriMesh surface = *drawn;
-        for (std::size_t p = 0; p < surface.points.size(); ++p)
-            surface.points[p] = node_at(x, first_node_[k] + static_cast<int>(p));
+        mesh::TriMesh surface;
+        if (const auto* sphere = std::get_if<Sphere>(&obstacle.shape)) {
+            surface = inscribed(node_at(x, first_node_[k]), sphere->radius_m);
+        } else if (const auto* drawn = std::get_if<mesh::TriMesh>(&obstacle.shape)) {
+            if (!mesh::check_closed(*drawn)) continue;
+            surface = *drawn;
+            for (std::size_t p = 0; p < surface.points.size(); ++p)
+                surface.points[p] = node_at(x, first_node_[k] + static_cast<int>(p));
+        } else {
+            continue;
+        }
         solids.emplace_back("obstacle \"" + obstacle.name + "\"",
                             when == When::start ? obstacle.start_line : obstacle.line, -1, std::move(surface));
     }

@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "base/core/disjoint_sets.hpp"
+
 namespace pliant::sim::contact {
 namespace {
 
@@ -17,6 +19,10 @@ std::vector<Value> each_once(std::vector<Value> values) {
     std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;
+}
+
+std::array<int, 2> sorted(int a, int b) {
+    return {std::min(a, b), std::max(a, b)};
 }
 
 }  // namespace
@@ -46,7 +52,7 @@ Pairs Contact::find(std::span<const double> x) const {
     const bool clear = is_clear(x, {});
     Pairs pairs = clear ? Pairs{} : search_pairs(x);
     if (!clear && pairs.empty()) note_clearance(x);
-    find_planes(x, 0, pairs);
+    find_exact(x, 0, pairs);
     const std::lock_guard lock(memory_->mutex);
     memory_->found.x.assign(x.begin(), x.end());
     memory_->found.pairs = pairs;
@@ -84,9 +90,9 @@ Pairs Contact::once_per_face(Pairs pairs, std::span<const double> x, bool within
         if (pair.flat_face >= 0) {
             const Closest& one = closest.at({pair.flat_face, pair.nodes[0]});
             if (one.pair != k) continue;
-            const double apart_m = rest_distance(pair.nodes[0], pair.flat_face);
+            const double apart_m = rest_distance(pair.nodes[0], pair.flat_face) - pair.radius_m;
             const std::span nodes(pair.nodes);
-            pair.reach_m = reach(pair.obstacle, apart_m);
+            pair.reach_m = reach(pair.nodes, apart_m);
             if (left_out(nodes.first(1), nodes.subspan(1), apart_m)) continue;
             if (within_reach && !(one.distance_m < pair.reach_m)) continue;
         }
@@ -102,7 +108,7 @@ Pairs Contact::search_pairs(std::span<const double> x) const {
         const double squared = c.squared_distance(x);
         if (squared >= most * most) return;
         const double apart = c.flat_face < 0 ? std::sqrt(c.squared_distance(rest_)) : 0;
-        const double reach = c.flat_face < 0 ? this->reach(obstacle_of(c.nodes), apart) : most;
+        const double reach = c.flat_face < 0 ? this->reach(std::span(c.nodes).first<4>(), apart) : most;
         if (c.flat_face >= 0 || (squared < reach * reach && !left_out(c.first_nodes(), c.second_nodes(), apart)))
             found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2, c.flat_face));
     };
@@ -120,14 +126,14 @@ Pairs Contact::find_near(std::span<const double> x, double within_m) const {
         if (!(c.squared_distance(x) < within_m * within_m)) return;
         const double apart = c.flat_face < 0 ? std::sqrt(c.squared_distance(rest_)) : 0;
         if (c.flat_face < 0 && left_out(c.first_nodes(), c.second_nodes(), apart)) return;
-        const double reach = this->reach(obstacle_of(c.nodes), apart);
+        const double reach = this->reach(std::span(c.nodes).first<4>(), apart);
         found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2, c.flat_face));
     };
     const Search search(*this, x, {}, within_m, Search::What::pairs, settings_.self);
     Pairs pairs;
     for (const Pairs& piece : search.run(Pairs{}, consider)) pairs.insert(pairs.end(), piece.begin(), piece.end());
     pairs = once_per_face(std::move(pairs), x, false);
-    find_planes(x, within_m, pairs);
+    find_exact(x, within_m, pairs);
     return pairs;
 }
 
@@ -159,8 +165,50 @@ int Contact::obstacle_of(std::span<const int> nodes) const {
     return std::max(obstacle_of_node_[nodes[0]], obstacle_of_node_[nodes[3]]);
 }
 
-double Contact::reach(int obstacle, double apart_m) const {
-    return std::min(settings_.distance_m, obstacle < 0 || drawn_in_m_[obstacle] == 0 ? 0.5 * apart_m : apart_m);
+/// A pair of two pieces does not keep its own distance at rest, since they may slide: the surroundings of what was
+/// near, with a longer reach, would be the rim of a pit in which it is caught. Much smaller gaps, as between bodies
+/// that are drawn flush, are local: barriers as short as these everywhere would make all contact slow.
+double Contact::reach(std::span<const int, 4> nodes, double apart_m) const {
+    const int obstacle = obstacle_of(nodes);
+    if (obstacle >= 0 && drawn_in_m_[obstacle] > 0) return std::min(settings_.distance_m, apart_m);
+    constexpr double shortest = 1.0 / 8;  // of the distance
+    const auto known = gap_m_.find(sorted(piece_of(nodes[0]), piece_of(nodes[3])));
+    const double gap = known == gap_m_.end() ? apart_m : std::max(known->second, shortest * settings_.distance_m);
+    return std::min(settings_.distance_m, 0.5 * std::min(gap, apart_m));
+}
+
+void Contact::number_pieces(const Surface& robot) {
+    DisjointSets pieces(static_cast<std::size_t>(robot_nodes_));
+    for (const auto& [a, b, c] : robot.triangles) {
+        pieces.join(a, b);
+        pieces.join(b, c);
+    }
+    piece_of_node_.resize(static_cast<std::size_t>(node_count()));
+    for (int node = 0; node < node_count(); ++node)
+        piece_of_node_[node] = node < robot_nodes_ ? pieces.find(node) : robot_nodes_ + obstacle_of_node_[node];
+}
+
+void Contact::measure_gaps() {
+    const bool only_drawn_in = std::ranges::none_of(drawn_in_m_, [](double depth) { return depth == 0; });
+    const auto is_first = [&](int node) { return piece_of(node) == piece_of(robot_.surface.points.front()); };
+    if (only_drawn_in && rigid_.empty() && std::ranges::all_of(robot_.surface.points, is_first)) return;
+    const double near = 2 * settings_.distance_m;
+    using Gaps = std::map<std::array<int, 2>, double>;
+    const auto look = [&](const Search::Candidate& c, Gaps& found) {
+        const std::array<int, 2> both = sorted(piece_of(c.nodes[0]), piece_of(c.nodes[3]));
+        if (both[0] == both[1] || c.distance_bound(rest_) >= near) return;
+        const double apart = std::sqrt(c.squared_distance(rest_));
+        if (apart >= near || left_out(c.first_nodes(), c.second_nodes(), apart)) return;
+        const auto [gap, is_new] = found.try_emplace(both, apart);
+        if (!is_new) gap->second = std::min(gap->second, apart);
+    };
+    const Search search(*this, rest_, {}, near, Search::What::pairs, settings_.self);
+    for (const Gaps& piece : search.run(Gaps{}, look)) {
+        for (const auto& [both, apart] : piece) {
+            const auto [gap, is_new] = gap_m_.try_emplace(both, apart);
+            if (!is_new) gap->second = std::min(gap->second, apart);
+        }
+    }
 }
 
 bool Contact::left_out(std::span<const int> first, std::span<const int> second, double apart_m) const {
@@ -208,28 +256,6 @@ std::vector<std::pair<std::size_t, std::size_t>> Contact::meetings(bool self) co
     }
     if (self) meetings.emplace_back(0, 0);
     return meetings;
-}
-
-void Contact::find_planes(std::span<const double> x, double within_m, Pairs& pairs) const {
-    visit_moving_sides([&](const Side& side) { find_planes(side, x, within_m, pairs); });
-}
-
-void Contact::find_planes(const Side& side, std::span<const double> x, double within_m, Pairs& pairs) const {
-    for (const Plane& plane : planes_) {
-        for (std::size_t i = 0; i < side.surface.points.size(); ++i) {
-            if (!side.surface.acts(i)) continue;
-            const int point = side.surface.points[i];
-            Pair pair;
-            pair.kind = PairKind::point_plane;
-            pair.nodes = {point, plane.node, plane.node, plane.node};
-            pair.obstacle = plane.obstacle;
-            pair.normal = plane.normal;
-            pair.reach_m = reach(plane.obstacle, distance(pair, stencil_at(pair.nodes, rest_)));
-            pair.area_m2 = side.areas.points[i];
-            const double within = within_m > 0 ? within_m : pair.reach_m;
-            if (distance(pair, stencil_at(pair.nodes, x)) < within) pairs.push_back(pair);
-        }
-    }
 }
 
 }  // namespace pliant::sim::contact

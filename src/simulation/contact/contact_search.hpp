@@ -19,6 +19,9 @@
 
 namespace pliant::sim::contact {
 
+/// Share of its present distance that every pair keeps in a step.
+inline constexpr double kept_share = 0.1;
+
 inline Stencil stencil_at(std::span<const int> nodes, std::span<const double> x) {
     return {node_at(x, nodes[0]), node_at(x, nodes[1]), node_at(x, nodes[2]), node_at(x, nodes[3])};
 }

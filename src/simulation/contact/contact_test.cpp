@@ -129,6 +129,21 @@ TEST_CASE("at rest, and after a rigid motion, there is no contact, for any conta
     CHECK(std::isinf(contact.smallest_distance({}, x)));
 }
 
+TEST_CASE("two pieces keep one reach, half the gap between them, wherever they slide on each other") {
+    SpringBody body = spring_box({0, 0, 0}, {0.02, 0.01, 0.005}, {8, 4, 2}, 0.1);
+    const auto lower = static_cast<Eigen::Index>(body.node_count());
+    body.add(spring_box({0.002, 0.002, 0.0054}, {0.005, 0.006, 0.005}, {2, 3, 2}, 0.15));
+    const Contact contact = contact_of(body, usual);
+    CHECK(contact.find(contact.rest()).empty());
+    for (const double slid : {0.0, 0.003, 0.01}) {
+        Vector x = vector_of(contact.rest());
+        for (Eigen::Index i = lower; i < x.size() / 3; ++i) x.segment<3>(3 * i) += Eigen::Vector3d(slid, 0, -0.3e-3);
+        const Pairs pairs = contact.find(span(x));
+        CHECK(pairs.size() > 5);
+        for (const Pair& pair : pairs) CHECK(pair.reach_m == near(0.2e-3, {.relative = 1e-9}));
+    }
+}
+
 TEST_CASE("the contact pairs agree with a search over all features") {
     const SpringBody body = two_boxes(4);
     const Contact contact = contact_of(body, usual);
@@ -673,4 +688,104 @@ TEST_CASE("what touches what: every obstacle counts for itself") {
     CHECK(partners_at(0.003, close_m) == Partners{{-1, 0}});
     CHECK(partners_at(close_m, 0.003) == Partners{{-2, 0}});
     CHECK(partners_at(close_m, close_m) == Partners{{-2, 0}, {-1, 0}});
+}
+
+namespace {
+
+double from_sphere(const Vec3& center, double radius_m, const std::array<int, 3>& t, std::span<const double> x) {
+    const Stencil at{center, node_at(x, t[0]), node_at(x, t[1]), node_at(x, t[2])};
+    return std::sqrt(squared_distance(nearest_point_triangle(at), at)) - radius_m;
+}
+
+}  // namespace
+
+TEST_CASE("a sphere meets the triangles near it, and no step lets it into the robot") {
+    const SpringBody body = spring_box({-0.005, -0.005, -0.01}, {0.01, 0.01, 0.01}, {4, 4, 4}, 0.1);
+    const Sphere ball{{0.001, -0.0005, 0.0062}, 0.006};
+    Settings settings = usual;
+    settings.self = false;
+    const Contact contact = contact_of(body, settings, {{"ball", ball, 0.3}});
+    const int centre = contact.first_node(0);
+    CHECK(contact.node_count() == contact.robot_node_count() + 1);
+    const double acts_m = ball.radius_m - 0.9 * usual.distance_m;
+    std::mt19937 random(3);
+    int hindered = 0;
+    std::size_t met = 0;
+    for (int k = 0; k < 40; ++k) {
+        Vector x = vector_of(contact.rest());
+        x[3 * centre + 2] -= 5e-4;
+        Vector dx(x.size());
+        for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
+            const Vec3 v = 0.002 * random_vector(random) + (i == centre ? Vec3{0, 0, -1e-3 * (k % 4)} : Vec3{});
+            dx.segment<3>(3 * i) << v.x, v.y, v.z;
+        }
+        const double step = contact.largest_step(span(x), span(dx));
+        CHECK(step > 0);
+        for (int s = 0; s <= 5; ++s) {
+            const Vector there = x + s * step / 5 * dx;
+            std::size_t near = 0;
+            for (const auto& t : body.triangles) {
+                const double apart = from_sphere(node_at(span(there), centre), acts_m, t, span(there));
+                const double at_rest = from_sphere(ball.center, acts_m, t, body.rest);
+                REQUIRE(apart > 0);
+                near += apart < std::min(usual.distance_m, at_rest) ? 1 : 0;
+            }
+            met += near;
+            CHECK(contact.find(span(there)).size() == near);
+            CHECK(std::isfinite(contact.energy(contact.find(span(there)), span(there))));
+        }
+        if (step == 1) continue;
+        ++hindered;
+        CHECK_FALSE(contact.is_free(span(x), span(dx)));
+        CHECK(contact.meets(span(x), span(dx)));
+    }
+    CHECK(hindered > 10);
+    CHECK(met > 100);
+}
+
+TEST_CASE("a sphere that slides over the robot pulls it along") {
+    const SpringBody body = spring_box({-0.005, -0.005, -0.01}, {0.01, 0.01, 0.01}, {4, 4, 4});
+    const Contact contact = contact_of(body, usual, {{"ball", Sphere{{0, 0, 0.0065}, 0.006}, 0.5}});
+    const int centre = contact.first_node(0);
+    Vector x = vector_of(contact.rest());
+    x[3 * centre + 2] -= 1e-3;
+    const Vector start = x;
+    x[3 * centre] += 1e-3;
+    const Pairs pairs = contact.find(span(x));
+    REQUIRE_FALSE(pairs.empty());
+    const Friction friction = contact.freeze(pairs, span(x), span(start));
+    const Forces pressed = contact.forces(pairs, span(x), nullptr), all = contact.forces(pairs, span(x), &friction);
+    CHECK(pressed.on_robot_N[0].z < 0);
+    CHECK(all.on_robot_N[0].x - pressed.on_robot_N[0].x > 0.4 * std::fabs(pressed.on_robot_N[0].z));
+    CHECK(pressed.smallest_distance_m < 0.5 * usual.distance_m);
+}
+
+TEST_CASE("a flat face of an object, however it is divided, meets a sphere once") {
+    const SpringBody object = spring_box({-0.005, -0.005, -0.01}, {0.01, 0.01, 0.01}, {4, 4, 4});
+    const int nodes = static_cast<int>(object.node_count());
+    const auto contact =
+        Contact::create(make_surface(object.triangles), {{"ball", Sphere{{0.0001, 0.0002, 0.0065}, 0.006}, 0}}, usual,
+                        object.rest, {{"cube", 0, nodes}});
+    REQUIRE_MESSAGE(contact.has_value(), contact.error().message);
+    Vector x = vector_of(contact->rest());
+    x[3 * contact->first_node(0) + 2] -= 1e-3;
+    const Pairs pairs = contact->find(span(x));
+    REQUIRE(pairs.size() == 1);
+    CHECK(pairs[0].kind == PairKind::sphere_triangle);
+    CHECK(contact->find_near(span(x), 2e-3).size() == 1);
+    CHECK(contact->forces(pairs, span(x), nullptr).on_rigid_N[0].z < 0);
+}
+
+TEST_CASE("a sphere that touches, holds or begins inside the robot is refused") {
+    const SpringBody body = spring_box({-0.005, -0.005, -0.01}, {0.01, 0.01, 0.01}, {4, 4, 4});
+    const auto refusal = [&](const Sphere& sphere) {
+        const auto contact = Contact::create(make_surface(body.triangles), {{"ball", sphere, 0}}, usual, body.rest);
+        return contact ? std::string() : contact.error().message;
+    };
+    CHECK(refusal({{0, 0, 0.0061}, 0.006}).empty());
+    CHECK(refusal({{0, 0, 0.006}, 0.006}).starts_with("obstacle \"ball\" touches or crosses the robot at rest"));
+    CHECK(refusal({{0, 0, 0.005}, 0.006}).starts_with("obstacle \"ball\" touches or crosses the robot at rest"));
+    CHECK(refusal({{0, 0, -0.005}, 0.05}).ends_with("all of it lies inside the obstacle, which is solid: move it out"));
+    CHECK(refusal({{0, 0, -0.005}, 0.002}).starts_with("obstacle \"ball\" begins inside the robot, which is solid"));
+    CHECK(refusal({{0, 0, 1}, 0}).ends_with("a sphere needs a centre, and a radius above zero"));
 }

@@ -8,9 +8,24 @@ namespace pliant::sim::contact {
 
 namespace {
 
+/// Of a sphere D = (√S − R)², with S the squared distance of its centre: its derivatives with respect to S.
+Curve of_sphere(double radius_m, double S) {
+    const double s = std::sqrt(S), gap = s - radius_m;
+    if (!(gap > 0)) return {0, 0, 0};
+    return {gap * gap, gap / s, radius_m / (2 * S * s)};
+}
+
 /// D, its gradient and Hessian, for all kinds.
 double squared(const Pair& pair, const Nearest& n, const Stencil& x) {
-    if (pair.kind != PairKind::point_plane) return squared_distance(n, x);
+    switch (pair.kind) {
+        case PairKind::point_triangle:
+        case PairKind::edge_edge:
+            return squared_distance(n, x);
+        case PairKind::sphere_triangle:
+            return of_sphere(pair.radius_m, squared_distance(n, x)).value;
+        case PairKind::point_plane:
+            break;
+    }
     const double h = dot(pair.normal, x[0] - x[1]);
     return h > 0 ? h * h : 0;
 }
@@ -23,11 +38,18 @@ Eigen::Matrix<double, 12, 1> plane_direction(const Pair& pair) {
 }
 
 Vector12 squared_gradient(const Pair& pair, const Nearest& n, const Stencil& x) {
+    if (pair.kind == PairKind::sphere_triangle)
+        return of_sphere(pair.radius_m, squared_distance(n, x)).slope * squared_distance_gradient(n, x);
     if (pair.kind != PairKind::point_plane) return squared_distance_gradient(n, x);
     return 2 * dot(pair.normal, x[0] - x[1]) * plane_direction(pair);
 }
 
 Matrix12 squared_hessian(const Pair& pair, const Nearest& n, const Stencil& x) {
+    if (pair.kind == PairKind::sphere_triangle) {
+        const Curve D = of_sphere(pair.radius_m, squared_distance(n, x));
+        const Vector12 dS = squared_distance_gradient(n, x);
+        return D.slope * squared_distance_hessian(n, x) + D.curvature * dS * dS.transpose();
+    }
     if (pair.kind != PairKind::point_plane) return squared_distance_hessian(n, x);
     const Vector12 direction = plane_direction(pair);
     return 2 * direction * direction.transpose();
@@ -51,6 +73,7 @@ Curve barrier_of(const Pair& pair, double squared) {
 Nearest nearest(const Pair& pair, const Stencil& x) {
     switch (pair.kind) {
         case PairKind::point_triangle:
+        case PairKind::sphere_triangle:
             return nearest_point_triangle(x);
         case PairKind::edge_edge:
             return nearest_edges(x);
@@ -64,12 +87,14 @@ Nearest nearest(const Pair& pair, const Stencil& x) {
 
 Vec3 separation(const Pair& pair, const Nearest& n, const Stencil& x) {
     const Vec3 r = separation(n, x);
+    if (pair.kind == PairKind::sphere_triangle) return (1 - pair.radius_m / norm(r)) * r;
     return pair.kind == PairKind::point_plane ? dot(pair.normal, r) * pair.normal : r;
 }
 
 double distance(const Pair& pair, const Stencil& x) {
     if (pair.kind == PairKind::point_plane) return dot(pair.normal, x[0] - x[1]);
-    return norm(separation(nearest(pair, x), x));
+    const double between = norm(separation(nearest(pair, x), x));
+    return pair.kind == PairKind::sphere_triangle ? between - pair.radius_m : between;
 }
 
 double potential(const Pair& pair, double stiffness_Pa, const Stencil& x) {

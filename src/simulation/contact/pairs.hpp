@@ -13,19 +13,20 @@
 
 namespace pliant::sim::contact {
 
-enum class PairKind { point_triangle, edge_edge, point_plane };
+enum class PairKind { point_triangle, edge_edge, point_plane, sphere_triangle };
 
 struct Pair {
     PairKind kind = PairKind::point_triangle;
-    std::array<int, 4>
-        nodes{};              ///< as in Stencil; point_plane: the point, the half-space's node, twice more the latter
-    int obstacle = -1;        ///< -1: the robot with itself
-    double reach_m = 0;       ///< d̂: farther apart there is no force
-    double area_m2 = 0;       ///< a
-    double parallel_m4 = 0;   ///< edge_edge: squared cross product below which the mollifier acts
-    Vec3 normal;              ///< point_plane: unit vector out of the half-space
-    bool robot_first = true;  ///< the robot's nodes come first (point_triangle against an obstacle may be either)
-    std::int64_t flat_face = -1;  ///< point_triangle: the flat face of the triangle, as in Surface
+    std::array<int, 4> nodes{};   ///< as in Stencil; point_plane: the point, the half-space's node, twice more the
+                                  ///< latter; sphere_triangle: the centre, then the corners
+    int obstacle = -1;            ///< -1: the robot with itself
+    double reach_m = 0;           ///< d̂: farther apart there is no force
+    double area_m2 = 0;           ///< a
+    double parallel_m4 = 0;       ///< edge_edge: squared cross product below which the mollifier acts
+    Vec3 normal;                  ///< point_plane: unit vector out of the half-space
+    double radius_m = 0;          ///< sphere_triangle
+    bool robot_first = true;      ///< the robot's nodes come first (point_triangle against an obstacle may be either)
+    std::int64_t flat_face = -1;  ///< of the triangle, if there is one: its flat face, as in Surface
 
     /// Number of distinct `nodes`.
     [[nodiscard]] int node_count() const { return kind == PairKind::point_plane ? 2 : 4; }
@@ -36,9 +37,10 @@ using Pairs = std::vector<Pair>;
 
 /// Nearest points of any kind of pair. For point_plane the weights are those of the two nodes.
 [[nodiscard]] Nearest nearest(const Pair& pair, const Stencil& x);
-/// The vector between them; for point_plane along the normal.
+/// The vector between them; for point_plane along the normal, for sphere_triangle from the surface of the sphere.
+/// Precondition: a sphere's centre is on no triangle.
 [[nodiscard]] Vec3 separation(const Pair& pair, const Nearest& n, const Stencil& x);
-/// Distance in metres; negative for a point inside a half-space.
+/// Distance in metres; negative for a point inside a half-space and for a triangle that reaches into a sphere.
 [[nodiscard]] double distance(const Pair& pair, const Stencil& x);
 
 /// E in J, and its derivatives. Infinite where the features touch.

@@ -28,12 +28,14 @@ Pair pair_of(PairKind kind, double reach) {
     pair.area_m2 = 0.3;
     pair.parallel_m4 = 1e-3;
     pair.normal = {0, 0.6, 0.8};
+    if (kind == PairKind::sphere_triangle) pair.radius_m = 0.5;
     return pair;
 }
 
 /// Every way in which two features can be near, with distances from 0.1 to 0.5.
 std::vector<PairCase> cases() {
-    const Pair pt = pair_of(PairKind::point_triangle, 0.7), ee = pair_of(PairKind::edge_edge, 0.7);
+    const Pair pt = pair_of(PairKind::point_triangle, 0.7), ee = pair_of(PairKind::edge_edge, 0.7),
+               ball = pair_of(PairKind::sphere_triangle, 0.7);
     return {
         {"point and face", pt, {{{0.25, 0.25, 0.3}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}},
         {"point and edge", pt, {{{0.5, -0.3, 0.4}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}},
@@ -46,6 +48,9 @@ std::vector<PairCase> cases() {
         {"point over a plane",
          pair_of(PairKind::point_plane, 0.7),
          {{{0.3, 0.1, 0.4}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}},
+        {"sphere and face", ball, {{{0.25, 0.25, 0.8}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}},
+        {"sphere and edge", ball, {{{0.5, -0.5, 0.6}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}},
+        {"sphere and corner", ball, {{{-0.4, -0.4, 0.4}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}},
     };
 }
 
@@ -126,7 +131,7 @@ TEST_CASE("at half its reach a plane presses with 4.33 times the stiffness, what
     }
 }
 
-TEST_CASE("beyond the reach the energy is zero; at or behind a plane it is infinite") {
+TEST_CASE("beyond the reach the energy is zero; at or behind a plane, and in a sphere, it is infinite") {
     for (const PairCase& c : cases()) {
         CAPTURE(c.name);
         const Stencil far = scaled_about_origin(c.x, 8);
@@ -134,6 +139,10 @@ TEST_CASE("beyond the reach the energy is zero; at or behind a plane it is infin
         CHECK(potential_gradient(c.pair, stiffness, far).norm() == 0);
         CHECK(potential_hessian(c.pair, stiffness, far).norm() == 0);
     }
+    const Pair ball = pair_of(PairKind::sphere_triangle, 0.1);
+    const Stencil reached{{{0.2, 0.2, 0.3}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    CHECK(std::isinf(potential(ball, stiffness, reached)));
+    CHECK(distance(ball, reached) == near(-0.2, {.relative = 1e-12}));
     const Pair plane = pair_of(PairKind::point_plane, 0.1);
     CHECK(std::isinf(potential(plane, stiffness, {Vec3{0, -1, -1}, {}, {}, {}})));
     CHECK(distance(plane, {Vec3{0, -0.6, -0.8}, {}, {}, {}}) == near(-1, {.relative = 1e-12}));

@@ -11,6 +11,7 @@
 #include "geometry/files/surface_file.hpp"
 #include "geometry/mesh/mass_properties.hpp"
 #include "geometry/mesher/mesher.hpp"
+#include "geometry/shapes/single_shape.hpp"
 #include "robot/description/regions.hpp"
 
 namespace pliant::robot {
@@ -42,6 +43,11 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
     Result<mesh::TriMesh> surface = shape_surface(robot, spec.shape, chord_share * distance_m);
     if (!surface) return surface;
     return mesh::scaled(std::move(*surface), robot.unit_m);
+}
+
+std::optional<mesh::SphereSolid> drawn_sphere(const ObstacleSpec& spec) {
+    const auto* solid = std::get_if<mesh::Solid>(&spec.shape);
+    return solid != nullptr ? mesh::single_sphere(*solid) : std::nullopt;
 }
 
 /// The diagonal of an object's bounding box, before it is turned, length units; 0 if its file cannot be read.
@@ -120,6 +126,8 @@ Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const
         body.start_line = obstacle.start_line > 0 ? obstacle.start_line : obstacle.line;
         if (const auto* plane = std::get_if<PlaneSelector>(&obstacle.shape)) {
             body.shape = sim::contact::HalfSpace{robot.unit_m * plane->point, plane->normal / norm(plane->normal)};
+        } else if (const auto sphere = drawn_sphere(obstacle)) {
+            body.shape = sim::contact::Sphere{robot.unit_m * sphere->center, robot.unit_m * sphere->radius};
         } else {
             Result<mesh::TriMesh> surface = obstacle_surface(robot, obstacle, rules.settings.distance_m);
             if (!surface)
