@@ -29,11 +29,16 @@ bool is_beginning(const fs::path& folder) {
     return !error;
 }
 
-/// Writes plan.json unless it exists: of several processes that begin at once, one wins.
-Status place_plan(const Plan& plan, const fs::path& folder) {
+/// A name beside plan.json that no other process has.
+fs::path plan_aside(const fs::path& folder) {
     std::array<char, 256> host{};
     (void)::gethostname(host.data(), host.size() - 1);
-    const fs::path aside = folder / fmt::format("plan.json.{}.{}", host.data(), ::getpid());
+    return folder / fmt::format("plan.json.{}.{}", host.data(), ::getpid());
+}
+
+/// Writes plan.json unless it exists: of several processes that begin at once, one wins.
+Status place_plan(const Plan& plan, const fs::path& folder) {
+    const fs::path aside = plan_aside(folder);
     if (Status status = write_file(aside, plan_json(plan)); !status) return status;
     const bool placed = ::link(aside.c_str(), (folder / "plan.json").c_str()) == 0 || errno == EEXIST;
     const int error = errno;
@@ -61,6 +66,23 @@ Status check_same(const Plan& plan, const Plan& there, const fs::path& folder) {
     return input_error(
         "{}: holds another study, or this one before its files were changed; choose another folder with -o",
         folder.string());
+}
+
+/// The plan in the folder, whose rows run where the study file is now: the project may have been copied or renamed
+/// since, and the files of the command are those at its present place, from which the fingerprint was made. The folder
+/// learns it too, for tasks that know nothing but the folder.
+Result<Plan> at_present_place(const Plan& plan, Plan there, const fs::path& folder) {
+    if (there.folder == plan.folder && there.study_file == plan.study_file) return there;
+    const bool moved = there.folder != plan.folder;
+    there.folder = plan.folder;
+    there.study_file = plan.study_file;
+    if (!moved) return there;
+    const fs::path aside = plan_aside(folder);
+    if (Status status = write_file(aside, plan_json(there)); !status) return tl::unexpected(status.error());
+    std::error_code error;
+    fs::rename(aside, folder / "plan.json", error);
+    if (error) return failure("{}: cannot be written: {}", (folder / "plan.json").string(), error.message());
+    return there;
 }
 
 /// Replaces a study that was planned here and has no rows: its file was corrected since.
@@ -97,6 +119,8 @@ Result<Plan> open_folder(const Plan& plan, const fs::path& folder, Begin begin) 
     Result<Plan> there = load_plan(folder);
     if (!there) return there;
     const Status same = check_same(plan, *there, folder);
+    if (same) there = at_present_place(plan, std::move(*there), folder);
+    if (!there) return there;
     if (begin == Begin::resume) return same ? there : tl::unexpected(same.error());
     const Result<std::size_t> recorded = recorded_rows(*there, folder);
     if (!recorded) return tl::unexpected(recorded.error());

@@ -20,9 +20,9 @@ enum class Begin {
 };
 
 /// Creates the folder with the plan in it, or opens it, and returns the plan in the folder: rows continue as they were
-/// planned. A fresh study replaces another one that has no records yet. Safe to call from any number of processes at
-/// once. Errors: the folder holds another study, or this one before a file changed; it holds records and `begin` is
-/// fresh; it contains something else.
+/// planned, in the folder of `plan`. A fresh study replaces another one that has no records yet. Safe to call from any
+/// number of processes at once. Errors: the folder holds another study, or this one before a file changed; it holds
+/// records and `begin` is fresh; it contains something else.
 [[nodiscard]] Result<Plan> open_folder(const Plan& plan, const std::filesystem::path& folder, Begin begin);
 
 /// Reads the plan of a folder.

@@ -70,6 +70,10 @@ public:
 
     Result<RunAccount> run() {
         Stopwatch watch;
+        // A process that cannot get there would end before its first row, without a word.
+        std::error_code ignored;
+        if (!plan_.folder.empty() && !fs::is_directory(plan_.folder, ignored))
+            return input_error("{}: the rows run in this folder, which is not there", plan_.folder.string());
         Follower follower(plan_, folder_);
         if (Status status = look(follower); !status) return tl::unexpected(status.error());
         judge_.emplace(plan_, settings_.stop_at_wrong_input && recorded_ == 0);

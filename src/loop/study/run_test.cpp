@@ -283,3 +283,30 @@ TEST_CASE("a folder with another study or other files is not changed") {
     REQUIRE(leader);
     CHECK_FALSE(lead(folder / "s"));
 }
+
+TEST_CASE("the rows of a copied study run where its file is now") {
+    const pliant::test::Folder folder("study");
+    const fs::path before = folder / "before", after = folder / "after";
+    fs::create_directories(before);
+    Plan plan = squares("plain");
+    plan.folder = before;
+    plan.study_file = (before / "squares.toml").string();
+    REQUIRE(open_folder(plan, before / "s", Begin::fresh));
+    fs::rename(before, after);
+    const auto old = load_plan(after / "s");
+    REQUIRE(old);
+    const auto nowhere = run(*old, after / "s", settings(*old));
+    REQUIRE_FALSE(nowhere);
+    CHECK(nowhere.error().message == before.string() + ": the rows run in this folder, which is not there");
+    plan.folder = after;
+    plan.study_file = (after / "squares.toml").string();
+    for (const Begin begin : {Begin::resume, Begin::fresh}) {
+        const auto there = open_folder(plan, after / "s", begin);
+        REQUIRE(there);
+        CHECK(there->folder == after);
+        CHECK(there->study_file == plan.study_file);
+        CHECK(load_plan(after / "s")->folder == after);
+    }
+    REQUIRE(run(*load_plan(after / "s"), after / "s", settings(plan)));
+    check_squares(plan, collected(plan, after / "s"));
+}
