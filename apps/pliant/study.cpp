@@ -186,6 +186,12 @@ Result<int> finish(const StudyOptions& options, const study::Plan& plan, const f
         for (const auto& result : figures) print_figures(plan, result);
         fmt::print("results: {}, open results.csv there\n", folder.string());
     }
+    if (rows->warned > 0) {
+        const auto first = std::find_if(rows->rows.begin(), rows->rows.end(),
+                                        [](const auto& row) { return row && row->done && !row->warning.empty(); });
+        fmt::print(stderr, "{}: {} of {} rows have warnings; row {}: {}\n", options.study, rows->warned,
+                   plan.rows.size(), (*first)->row, (*first)->warning);
+    }
     if (rows->failed == 0) return exit_done;
     const auto first =
         std::find_if(rows->rows.begin(), rows->rows.end(), [](const auto& row) { return row && !row->done; });

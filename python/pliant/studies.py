@@ -52,6 +52,8 @@ class StudyResult(Value):
     done: npt.NDArray[np.bool_]
     #: why the row failed; "" where it succeeded
     reasons: npt.NDArray[np.str_]
+    #: reasons not to trust the results of a row, as the command gave them; "" where it gave none
+    warnings: npt.NDArray[np.str_]
     #: all figures, as in summary.json
     summary: dict[str, Any]
     #: folder of the study
@@ -89,6 +91,7 @@ class StudyResult(Value):
                 results={name: values[f"result.{name}"] for name in summary["results"]},
                 done=values["done"],
                 reasons=values["reason"],
+                warnings=values["warning"],
                 summary=summary,
                 folder=path,
             )

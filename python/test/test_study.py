@@ -38,7 +38,7 @@ def place(tmp_path):
 
 def test_study_results_are_arrays_and_agree_with_the_closed_form(place):
     found = pliant.study(plan(), place / "out", jobs=2)
-    assert len(found) == 3 and found.done.all() and (found.reasons == "").all()
+    assert len(found) == 3 and found.done.all() and (found.reasons == "").all() and (found.warnings == "").all()
     assert found.units == {"modulus": "MPa"}
     assert found.keys["modulus"].tolist() == [1, 2, 3]
     # At a given stretch and Poisson ratio every stress is proportional to Young's modulus; 1e-6: what the solver leaves.

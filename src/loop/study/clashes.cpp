@@ -48,7 +48,8 @@ private:
         return fmt::format("{} \"{}\", as {} does; only one of them may", what, name, other);
     }
 
-    std::map<std::string, std::string> columns_ = {{"row", ""}, {"status", ""}, {"reason", ""}}, options_;
+    std::map<std::string, std::string> columns_ = {{"row", ""}, {"status", ""}, {"reason", ""}, {"warning", ""}},
+                                       options_;
     std::map<config::Place, std::string> places_;
 };
 

@@ -155,6 +155,7 @@ Result<Collected> collect(const Plan& plan, const fs::path& folder) {
         if (!records) return tl::unexpected(records.error());
         for (RowRecord& row : records->rows) {
             (row.done ? all.done : all.failed) += 1;
+            all.warned += row.done && !row.warning.empty() ? 1 : 0;
             all.rows[row.row] = std::move(row);
         }
         all.tasks.insert(all.tasks.end(), records->tasks.begin(), records->tasks.end());

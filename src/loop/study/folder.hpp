@@ -36,6 +36,7 @@ struct Collected {
     std::vector<std::optional<RowRecord>> rows;  ///< (rows)
     std::vector<TaskRecord> tasks;
     std::size_t done = 0, failed = 0;      ///< rows
+    std::size_t warned = 0;                ///< rows that are done and have a warning
     std::size_t damaged = 0, doubled = 0;  ///< records
     [[nodiscard]] std::size_t recorded() const { return done + failed; }
 };

@@ -135,14 +135,16 @@ Status write_npz(const Plan& plan, const fs::path& path, const Collected& rows) 
     for (std::size_t k = 0; k < plan.results.size(); ++k)
         add("result." + plan.results[k].name, npy_numbers(result_of(plan, rows, k)));
     std::vector<bool> done;
-    std::vector<std::string> reasons;
+    std::vector<std::string> reasons, warnings;
     for (const auto& row : rows.rows) {
         done.push_back(row && row->done);
         reasons.push_back(row ? row->reason : "");
+        warnings.push_back(row ? row->warning : "");
     }
     add("done", npy_truths(done));
-    constexpr std::size_t most_letters = 200;  // the whole reasons are in results.csv
+    constexpr std::size_t most_letters = 200;  // the whole texts are in results.csv
     add("reason", npy_texts(reasons, most_letters));
+    add("warning", npy_texts(warnings, most_letters));
     return status ? zip->close() : status;
 }
 
@@ -166,15 +168,16 @@ std::string results_csv(const Plan& plan, const Collected& rows) {
     std::string text = "row";
     for (const Key& key : plan.keys) text += "," + cell(column_of(key));
     for (const Wanted& wanted : plan.results) text += "," + cell(wanted.name);
-    text += ",status,reason\n";
+    text += ",status,reason,warning\n";
+    const auto words = [](const std::string& some) { return some.empty() ? "" : cell(some); };
     for (std::size_t row = 0; row < plan.rows.size(); ++row) {
         const auto& record = rows.rows[row];
         text += fmt::format("{}", row);
         for (const std::string& value : plan.rows[row]) text += "," + cell(value);
         for (std::size_t k = 0; k < plan.results.size(); ++k)
             text += "," + (record && record->done ? number_cell(record->values[k]) : "");
-        text +=
-            fmt::format(",{},{}\n", status_of(record), record && !record->reason.empty() ? cell(record->reason) : "");
+        text += fmt::format(",{},{},{}\n", status_of(record), record ? words(record->reason) : "",
+                            record ? words(record->warning) : "");
     }
     return text;
 }
@@ -205,13 +208,15 @@ std::string sensitivity_csv(const Plan& plan, const std::vector<ResultFigures>& 
 std::string summary_json(const Plan& plan, const Collected& rows, const std::vector<ResultFigures>& figures,
                          const RunAccount* account) {
     nlohmann::json keys = nlohmann::json::array(), results = nlohmann::json::object(),
-                   failures = nlohmann::json::array();
+                   failures = nlohmann::json::array(), warnings = nlohmann::json::array();
     for (const Key& key : plan.keys) keys.push_back({{"name", key.name}, {"unit", key.unit}});
     for (const ResultFigures& result : figures) results[result.name] = json_of(plan, result);
-    constexpr std::size_t most_failures = 100;
+    constexpr std::size_t most_told = 100;
     for (const auto& row : rows.rows) {
-        if (row && !row->done && failures.size() < most_failures)
+        if (row && !row->done && failures.size() < most_told)
             failures.push_back({{"row", row->row}, {"reason", row->reason}});
+        if (row && row->done && !row->warning.empty() && warnings.size() < most_told)
+            warnings.push_back({{"row", row->row}, {"warning", row->warning}});
     }
     const nlohmann::json json = {{"pliant", plan.version},
                                  {"study", plan.study},
@@ -220,12 +225,14 @@ std::string summary_json(const Plan& plan, const Collected& rows, const std::vec
                                  {"rows", plan.rows.size()},
                                  {"done", rows.done},
                                  {"failed", rows.failed},
+                                 {"warned", rows.warned},
                                  {"missing", plan.rows.size() - rows.recorded()},
                                  {"damaged_records", rows.damaged},
                                  {"doubled_records", rows.doubled},
                                  {"keys", keys},
                                  {"results", results},
                                  {"failures", failures},
+                                 {"warnings", warnings},
                                  {"accounts", account_json(rows, account)}};
     return json_text(json, 2) + "\n";
 }

@@ -25,7 +25,7 @@ struct ResultFigures {
 
 /// Title of the column of a key: "modulus (MPa)".
 [[nodiscard]] std::string column_of(const Key& key);
-/// One line per row: keys with their units, results, status and reason; the same bytes wherever the rows ran.
+/// One line per row: keys with their units, results, status, reason and warning; the same bytes wherever the rows ran.
 [[nodiscard]] std::string results_csv(const Plan& plan, const Collected& rows);
 /// Wall and processor time of each row.
 [[nodiscard]] std::string times_csv(const Collected& rows);

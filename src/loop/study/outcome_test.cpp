@@ -31,21 +31,22 @@ Collected three_collected() {
     Collected all;
     all.rows = {RowRecord{0, true, false, "", {1.5, 0.1}, 1, 0.5},
                 RowRecord{1, false, false, "step 3: no \"balance\", sorry", {9, 9}, 2, 1},
-                RowRecord{2, true, false, "", {2.5, NAN}, 1, 0.5}};
+                RowRecord{2, true, false, "", {2.5, NAN}, 1, 0.5, false, "below a vacuum; no balance"}};
     all.done = 2;
     all.failed = 1;
+    all.warned = 1;
     all.tasks = {{"node1", 3, 2, 2}, {"node2", 1, 1, 1}, {"node1", 1, 1, 1}};
     return all;
 }
 
 }  // namespace
 
-TEST_CASE("results.csv has keys with units, results of finished rows, and reasons of failures") {
+TEST_CASE("results.csv has keys with units, results of finished rows, and reasons of failures and warnings") {
     CHECK(results_csv(three_rows(), three_collected()) ==
-          "row,modulus (MPa),law,tension,\"tip, up\",status,reason\n"
-          "0,5,yeoh,1.5,0.1,done,\n"
-          "1,10,neo-hookean,,,failed,\"step 3: no \"\"balance\"\", sorry\"\n"
-          "2,20,yeoh,2.5,,done,\n");
+          "row,modulus (MPa),law,tension,\"tip, up\",status,reason,warning\n"
+          "0,5,yeoh,1.5,0.1,done,,\n"
+          "1,10,neo-hookean,,,failed,\"step 3: no \"\"balance\"\", sorry\",\n"
+          "2,20,yeoh,2.5,,done,,\"below a vacuum; no balance\"\n");
 }
 
 TEST_CASE("the summary counts rows, and adds up the time of each machine") {
@@ -60,6 +61,9 @@ TEST_CASE("the summary counts rows, and adds up the time of each machine") {
     CHECK(json["results"]["tension"]["standard_deviation"].get<double>() == near(std::sqrt(0.5), {.relative = 1e-12}));
     CHECK(json["results"]["tip, up"]["rows"] == 1);
     CHECK(json["failures"][0]["row"] == 1);
+    CHECK(json["warned"] == 1);
+    CHECK(json["warnings"][0]["row"] == 2);
+    CHECK(json["warnings"][0]["warning"] == "below a vacuum; no balance");
     CHECK(json["accounts"]["places"]["node1"]["cpu_s"] == 3.0);
     CHECK(json["accounts"]["rows_cpu_s"] == 2.0);
 }
@@ -87,8 +91,8 @@ TEST_CASE("all tables are written, and the archive holds every key and result") 
     REQUIRE(write_outcome(plan, folder.path(), three_collected(), figures_of(plan, three_collected()), "{}"));
     const auto zip = ZipReader::open(folder / "results.npz");
     REQUIRE(zip);
-    for (const char* name :
-         {"key.modulus.npy", "key.law.npy", "result.tension.npy", "result.tip, up.npy", "done.npy", "reason.npy"})
+    for (const char* name : {"key.modulus.npy", "key.law.npy", "result.tension.npy", "result.tip, up.npy", "done.npy",
+                             "reason.npy", "warning.npy"})
         CHECK(zip->has(name));
     CHECK(zip->read("result.tension.npy", 1000)->size() == 128 + 24);
     CHECK(read_file(folder / "times.csv").value() ==

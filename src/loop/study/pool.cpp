@@ -77,7 +77,8 @@ Result<RowRecord> record_of(std::size_t row, const nlohmann::json& answer, std::
                      {},
                      answer.at("wall_s").get<double>(),
                      answer.at("cpu_s").get<double>(),
-                     answer.at("wrong_input").get<bool>()};
+                     answer.at("wrong_input").get<bool>(),
+                     answer.at("warning").get<std::string>()};
     for (const auto& value : answer.at("values"))
         record.values.push_back(value.is_null() ? std::nan("") : value.get<double>());
     if (record.values.size() != results) return failure("row {}: an answer with {} numbers", row, record.values.size());

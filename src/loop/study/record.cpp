@@ -57,6 +57,7 @@ RowRecord row_of(const nlohmann::json& json) {
     for (const auto& value : json.at("values")) row.values.push_back(number_or_nan(value));
     row.wall_s = number_or_nan(json.at("wall_s"));
     row.cpu_s = number_or_nan(json.at("cpu_s"));
+    row.warning = json.value("warning", "");
     return row;
 }
 
@@ -160,6 +161,7 @@ std::string record_line(const RowRecord& record) {
     nlohmann::json json = {{"row", record.row},       {"done", record.done},     {"reason", record.reason},
                            {"values", record.values}, {"wall_s", record.wall_s}, {"cpu_s", record.cpu_s}};
     if (record.missing_path) json["missing_path"] = true;
+    if (!record.warning.empty()) json["warning"] = record.warning;
     return line_of(json);
 }
 

@@ -23,6 +23,7 @@ struct RowRecord {
     std::vector<double> values;  ///< (results); NaN: missing
     double wall_s = 0, cpu_s = 0;
     bool wrong_input = false;  ///< it failed because of its files or options; not recorded
+    std::string warning{};     ///< reasons not to trust its results, as the command gave them; one line
     bool operator==(const RowRecord&) const = default;
 };
 

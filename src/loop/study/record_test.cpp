@@ -42,6 +42,7 @@ Result<ChunkRecords> read_back(const Plan& plan, std::string_view text) {
 TEST_CASE("records are read back bit for bit") {
     const Plan plan = ten_rows();
     RowRecord failed{5, false, true, "no convergence: \"x\"\n at step 3", {NAN, -0.0}, 1, 2};
+    failed.warning = "below a \"vacuum\"";
     const TaskRecord task{"node1 job 7_3", 3, 2.5, 2.25};
     const auto found = read_back(plan, chunk_text(plan) + record_line(failed) + record_line(task));
     REQUIRE(found);
@@ -51,6 +52,7 @@ TEST_CASE("records are read back bit for bit") {
     CHECK(std::isnan(found->rows[2].values[0]));
     CHECK(found->rows[2].reason == failed.reason);
     CHECK(found->rows[2].missing_path);
+    CHECK(found->rows[2].warning == failed.warning);
     CHECK(found->tasks == std::vector{task});
     CHECK(found->begun.empty());
     CHECK(found->damaged == 0);

@@ -310,3 +310,15 @@ TEST_CASE("the rows of a copied study run where its file is now") {
     REQUIRE(run(*load_plan(after / "s"), after / "s", settings(plan)));
     check_squares(plan, collected(plan, after / "s"));
 }
+
+TEST_CASE("warnings of a row not to trust its results are recorded with it") {
+    const pliant::test::Folder folder("study");
+    const Plan plan = squares("warn");
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    REQUIRE(run(plan, folder / "s", settings(plan)));
+    const Collected found = collected(plan, folder / "s");
+    check_squares(plan, found);
+    CHECK(found.warned == 1);
+    CHECK(found.rows[3]->warning == "below a vacuum; no balance");
+    CHECK(found.rows[4]->warning.empty());
+}

@@ -38,7 +38,8 @@ int work(const std::vector<std::string>& words) {
         return 2;
     }
     if (kind == "silent" && x == 3) return 0;
-    fmt::print("{{\"square\": {}, \"pid\": {}}}\n", x * x, ::getpid());
+    const char* const more = kind == "warn" && x == 3 ? R"(, "warnings": ["below a vacuum", "no balance"])" : "";
+    fmt::print("{{\"square\": {}, \"pid\": {}{}}}\n", x * x, ::getpid(), more);
     return 0;
 }
 

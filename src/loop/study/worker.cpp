@@ -61,6 +61,16 @@ public:
     std::string missing;  ///< error message of the first missing path
 };
 
+/// The list `warnings` of a command's output, of which every one may be the grave one; "" if it has none.
+std::string warning_in(const nlohmann::json& output) {
+    std::string all;
+    if (!output.is_object() || !output.contains("warnings") || !output["warnings"].is_array()) return all;
+    for (const auto& warning : output["warnings"]) {
+        if (warning.is_string()) all += (all.empty() ? "" : "; ") + warning.get<std::string>();
+    }
+    return all;
+}
+
 constexpr int wrong_input = 2;  ///< exit status of a command whose files or options are wrong
 
 nlohmann::json run_row(const std::vector<std::string>& words, const std::vector<JsonPath>& paths,
@@ -84,6 +94,7 @@ nlohmann::json run_row(const std::vector<std::string>& words, const std::vector<
             {"missing_path", missing_path},
             {"wrong_input", outcome.exit_status == wrong_input},
             {"reason", reason},
+            {"warning", warning_in(reading.json)},
             {"values", std::move(reading.values)},
             {"wall_s", watch.read_s()},
             {"cpu_s", cpu_s() - cpu_before}};
