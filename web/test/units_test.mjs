@@ -314,6 +314,13 @@ test('a slowly curving recording keeps its path within 0.2 %', () => {
   });
 });
 
+test('an hour of recording beside a robot that stands still is read at once', () => {
+  const began = process.cpuUsage();
+  assert.deepEqual(program(Array.from({ length: 18_000 }, (_, i) => (i === 9000 ? 5 : 2))), [[1799.8, 2], [1800, 5], [1800.2, 2], [3599.8, 2]]);
+  const took_s = 1e-6 * process.cpuUsage(began).user;
+  assert.ok(took_s < 5, `${took_s} s`); // checked key by key: over half a minute
+});
+
 test('a recorded program ends with its last key', () => {
   page.scene.value = { head: { actuators: [actuators[0]], markers: [] } };
   page.recorded.value = [0, 1, 2].map((value, i) => ({ time: 0.2 * i, values: { flexor: { kind: 'tension_N', value } } }));

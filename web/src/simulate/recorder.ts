@@ -49,26 +49,41 @@ effect(() => {
 function isStraight(keys: Key[], from: number, to: number, names: string[]): boolean {
   const a = keys[from];
   const b = keys[to];
-  return keys.slice(from + 1, to).every((k) => {
-    const share = (k.time - a.time) / (b.time - a.time);
-    return names.every((n) => {
-      const [v, v0, v1] = [k, a, b].map((key) => key.values[n].value);
-      return Math.abs(v0 + share * (v1 - v0) - v) <= 1e-3 * Math.max(Math.abs(v0), Math.abs(v1), 1e-9);
-    });
+  return names.every((n) => {
+    const v0 = a.values[n].value;
+    const v1 = b.values[n].value;
+    const room = 1e-3 * Math.max(Math.abs(v0), Math.abs(v1), 1e-9);
+    for (let i = from + 1; i < to; ++i) {
+      const share = (keys[i].time - a.time) / (b.time - a.time);
+      if (Math.abs(v0 + share * (v1 - v0) - keys[i].values[n].value) > room) return false;
+    }
+    return true;
   });
 }
 
 /// The keys needed for linear interpolation of the others. Each stretch is checked against all of its keys: in a slowly
-/// bending motion no three neighbours show the bend.
+/// bending motion no three neighbours show the bend. A stretch is doubled as long as it is straight, and its end is then
+/// found by halving: checked key by key, a robot that stands still for long would take the square of that time.
 function corners(keys: Key[], names: string[]): Key[] {
   const kept = keys.slice(0, 1);
-  let from = 0;
-  for (let to = 2; to < keys.length; ++to) {
-    if (isStraight(keys, from, to, names)) continue;
-    from = to - 1;
+  const last = keys.length - 1;
+  for (let from = 0; from < last; ) {
+    let end = from + 1;
+    let beyond = last + 1;
+    for (let length = 2; end < last && beyond > last; length *= 2) {
+      const to = Math.min(from + length, last);
+      if (isStraight(keys, from, to, names)) end = to;
+      else beyond = to;
+    }
+    while (beyond - end > 1) {
+      const middle = (end + beyond) >> 1;
+      if (isStraight(keys, from, middle, names)) end = middle;
+      else beyond = middle;
+    }
+    from = end;
     kept.push(keys[from]);
   }
-  return keys.length > 1 ? [...kept, keys[keys.length - 1]] : kept;
+  return kept;
 }
 
 /// A [[program.key]] for each, with the values that drive the actuators.
