@@ -355,9 +355,16 @@ test('the plots\' data as a table: quoted names, linear states marked, no time c
   assert.equal(cell(rows[1], 'seconds'), 0.1);
   page.keepRun('first');
   assert.deepEqual(page.runs.value[0].columns.flexor_tension_N, [4], 'of a kept run the linear states are left out');
+  assert.equal(page.runs.value[0].name, 'first 1');
   page.runs.value = [];
-  page.frame.value = { head: { ...frame(1, 5, 2).head, revision: 78 } }; // another robot begins anew
+  page.frame.value = { head: { ...frame(1, 5, 1).head, revision: 78 } }; // another robot begins anew
   assert.deepEqual(page.valuesOf('tip_x_mm'), [5]);
+  page.keepRun('run');
+  assert.deepEqual([page.runs.value[0].name, page.runs.value[0].columns.flexor_tension_N], ['≈ run 1', [5]], 'a robot that has only linear states keeps them, and its run says so');
+  assert.equal(page.freeTableName('m.csv'), 'm.csv');
+  page.runs.value = [{ name: 'm.csv', columns: {} }];
+  assert.equal(page.freeTableName('m.csv'), 'm.csv (2)');
+  page.runs.value = [];
 });
 
 test('a table of measurements is read, or refused with its line', () => {
@@ -371,6 +378,7 @@ test('a table of measurements is read, or refused with its line', () => {
   assert.match(page.readTable('m.csv', 'a,b\n1,2\n3\n'), /^m\.csv:3: 1 columns, but the header line names 2/);
   assert.match(page.readTable('m.csv', 'a,b\n1,two\n'), /^m\.csv:2: "two" is not a number/);
   assert.match(page.readTable('m.csv', 'a,b\n'), /no rows/);
+  assert.equal(page.readTable('m.csv', '# x\ntime,a,a\n0,1,2\n'), 'm.csv:2: two columns are named a; every column needs a name of its own');
   assert.deepEqual(page.readTable('m.csv', '# measured\na,b\n# x\n1,2\n').columns, { a: [1], b: [2] });
   assert.match(page.readTable('m.csv', '# measured\na,b\n\n# x\n1\n'), /^m\.csv:5: 1 columns/);
   assert.equal(page.judgeRows('# x\nuse,b\n#judge,1\njudge,2\n'), 1);

@@ -7,7 +7,7 @@ import { counted } from '../counted';
 import { Icon } from '../icons';
 import { say, scene } from '../store';
 import { cssColour, theme } from '../theme';
-import { axisRange, freeRunName, keepRun, plottedVersion, readTable, runs, tracks, valuesOf, type Channel } from './tracks';
+import { axisRange, freeTableName, keepRun, plottedVersion, readTable, runs, tracks, valuesOf, type Channel } from './tracks';
 
 /// Powers of ten, thinned out: grid lines of a logarithmic axis over many decades would merge into a grey block.
 function decades(least: number, most: number): number[] {
@@ -252,7 +252,7 @@ async function takeTable(input: HTMLInputElement) {
   if (!file) return;
   const read = readTable(file.name, await file.text());
   if (typeof read === 'string') say(read);
-  else runs.value = [...runs.value, read];
+  else runs.value = [...runs.value, { ...read, name: freeTableName(read.name) }];
   input.value = '';
 }
 
@@ -261,7 +261,7 @@ function Runs() {
   return (
     <div class="runs">
       <div class="row left wrap">
-        <button class="small" data-testid="keep-run" onClick={() => keepRun(freeRunName('run'))}>
+        <button class="small" data-testid="keep-run" onClick={() => keepRun('run')}>
           Keep this run
         </button>
         <label class="button small">

@@ -153,14 +153,27 @@ export interface Run {
 }
 export const runs = signal<Run[]>([]);
 
+const isRunName = (name: string) => runs.value.some((run) => run.name === name);
+
 /// "run 2": the first of its kind that no run has. Runs may have been removed meanwhile.
 export function freeRunName(kind: string): string {
-  for (let k = 1; ; ++k) if (!runs.value.some((run) => run.name === `${kind} ${k}`)) return `${kind} ${k}`;
+  for (let k = 1; ; ++k) if (!isRunName(`${kind} ${k}`)) return `${kind} ${k}`;
 }
 
-export function keepRun(name: string) {
+/// The name of a file, with a number if a run has that name.
+export function freeTableName(file: string): string {
+  for (let k = 1; ; ++k) {
+    const name = k === 1 ? file : `${file} (${k})`;
+    if (!isRunName(name)) return name;
+  }
+}
+
+/// Approximate states are left out, unless the robot has no others, as one with linear elements: then the name says so.
+export function keepRun(kind: string) {
   const fine = tracks.rough.map((r, i) => (r ? -1 : i)).filter((i) => i >= 0);
-  const pick = (list: number[]) => fine.map((i) => list[i]);
+  const kept = fine.length > 0 ? fine : tracks.rough.map((_, i) => i);
+  const name = freeRunName(fine.length > 0 ? kind : `≈ ${kind}`);
+  const pick = (list: number[]) => kept.map((i) => list[i]);
   const columns = Object.fromEntries(tracks.channels.map((c, k) => [c.key, pick(tracks.values[k])]));
   runs.value = [...runs.value, { name, columns: { ...columns, seconds: pick(tracks.seconds) } }];
 }
@@ -182,6 +195,8 @@ export function readTable(name: string, text: string): Run | string {
   const first = header?.number ?? 1;
   if (head.length < 2 || head.some((h) => h === '')) return `${name}:${first}: a header line with at least two column names is needed`;
   if (head.every((h) => Number.isFinite(Number(h)))) return `${name}:${first}: the first line must name the columns, as in shortening_mm,tension_N`;
+  const twice = head.find((h, k) => head.indexOf(h) < k);
+  if (twice !== undefined) return `${name}:${first}: two columns are named ${twice}; every column needs a name of its own`;
   const columns: Record<string, number[]> = Object.fromEntries(head.map((h) => [h, []]));
   for (const { line, number } of lines) {
     const row = cells(line);
