@@ -57,6 +57,11 @@ Result<SearchResult> found_inputs(const Built& built, const sim::InverseTask& ta
     sim::Stepper stepper(built.model, stepping);
     const sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {}, progress);
     if (found.cancelled) return tl::unexpected(cancelled());
+    if (found.waypoints.empty()) {
+        std::string why = found.message.empty() ? "no inputs are found" : found.message;
+        for (const std::string& note : found.notes) why += "; " + note;
+        return failure("{}", why);
+    }
     Json json =
         result_json("goal", built, parse_json(report::inverse_json({built.robot.name, built.model, task, found})));
     json["program"] = program_json(built, task, found);

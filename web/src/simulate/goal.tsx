@@ -193,12 +193,18 @@ function Waypoint({ at }: { at: WaypointFound }) {
 const asked = signal('');
 const order = () => JSON.stringify([marker.value, path.value]);
 
+interface GoalFound {
+  waypoints: WaypointFound[];
+  message?: string; // why waypoints are missing
+  notes?: string[]; // reservations about the result
+}
+
 function Found() {
   const last = resultOf('goal');
   if (!last || last.revision !== scene.value?.head.revision) return null;
   if (searching.value?.kind === 'goal') return null;
   if (asked.value && asked.value !== order()) return <p class="quiet" data-testid="goal-changed">The points have changed since the last search.</p>;
-  const waypoints = (last.found as { waypoints: WaypointFound[] }).waypoints;
+  const { waypoints, message, notes } = last.found as GoalFound;
   return (
     <>
       <ol class="waypoints" data-testid="goal-found">
@@ -206,6 +212,8 @@ function Found() {
           <Waypoint at={at} key={at.index} />
         ))}
       </ol>
+      {message && <p class="limit" role="alert" data-testid="goal-message">{message}</p>}
+      {notes?.map((note) => <p class="quiet" key={note} data-testid="goal-note">{note}</p>)}
       {waypoints.length > 0 && (
         <button
           class="small"
