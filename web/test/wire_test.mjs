@@ -81,6 +81,30 @@ function rawBody(path) {
   });
 }
 
+test('an answer is whole for a client that reads slowly and asks for the end of the connection', async () => {
+  const { gunzipSync } = await import('node:zlib');
+  const html = gunzipSync(await rawBody('/')).toString();
+  const url = new URL(origin);
+  for (const asset of [...html.matchAll(/(?:src|href)="(\/assets\/[^"]+)"/g)].map((m) => m[1])) {
+    const whole = await rawBody(asset);
+    const got = await new Promise((resolve) => {
+      const pieces = [];
+      const socket = connect(Number(url.port), url.hostname, () => socket.write(`GET ${asset} HTTP/1.1\r\nHost: ${url.host}\r\nConnection: close\r\n\r\n`));
+      const done = () => resolve(Buffer.concat(pieces));
+      socket.on('data', (d) => {
+        pieces.push(d);
+        socket.pause();
+        setTimeout(() => socket.resume(), 20);
+      });
+      socket.on('error', done);
+      socket.on('end', done);
+    });
+    const body = got.subarray(got.indexOf('\r\n\r\n') + 4);
+    assert.equal(body.length, whole.length, asset);
+    assert.ok(body.equals(whole), asset);
+  }
+});
+
 test('requests with another Host or Origin are refused', async () => {
   assert.equal((await ask('/api/project')).status, 200);
   assert.equal((await ask('/api/project', { headers: { Host: 'evil.example' } })).status, 403);

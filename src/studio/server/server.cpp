@@ -322,6 +322,7 @@ Status Server::listen(State& state, const ServerSettings& settings) {
     const bool six = settings.address.find(':') != std::string::npos;
     const std::string ports =
         fmt::format("{}:{}", six ? "[" + settings.address + "]" : settings.address, settings.port);
+    // Without linger_timeout_ms: with 0 the library's closing would throw away what is written and not yet sent.
     // clang-format off
     const char* options[] = {"listening_ports", ports.c_str(),
                              "num_threads", threads,
@@ -329,7 +330,6 @@ Status Server::listen(State& state, const ServerSettings& settings) {
                              "websocket_timeout_ms", "20000",
                              "enable_keep_alive", "yes",
                              "keep_alive_timeout_ms", "5000",
-                             "linger_timeout_ms", "0",
                              "tcp_nodelay", "1",
                              nullptr};
     // clang-format on
