@@ -47,10 +47,11 @@ private:
     std::chrono::steady_clock::time_point last_{};
 };
 
-MakeSession::MakeSession(std::function<void(const std::string&)> tell, std::string version)
+MakeSession::MakeSession(std::function<void(const std::string&)> tell, std::string version, std::int64_t numbers_from)
     : tell_(std::move(tell)),
       version_(std::move(version)),
-      scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())) {}
+      scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())),
+      revision_(numbers_from) {}
 
 MakeSession::~MakeSession() {
     cancel();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -51,12 +52,12 @@ struct JobOrigin {
 
 /// A job and the machine that it was made for.
 struct OpenJob {
-    OpenJob(job::Archive archive_, machine::Printer printer_, std::filesystem::path file_, int revision_)
+    OpenJob(job::Archive archive_, machine::Printer printer_, std::filesystem::path file_, std::int64_t revision_)
         : archive(std::move(archive_)), printer(std::move(printer_)), file(std::move(file_)), revision(revision_) {}
     job::Archive archive;
     machine::Printer printer;
     std::filesystem::path file;
-    int revision;
+    std::int64_t revision;
     std::string key = random_key();    ///< in the addresses of its images, which browsers keep for ever
     std::optional<FileStamp> stamp{};  ///< of the file when it was opened
     JobOrigin origin{};                ///< with colours of all materials
@@ -73,7 +74,8 @@ inline constexpr std::string_view no_job_text = "there is no job yet: slice the 
 
 class MakeSession {
 public:
-    MakeSession(std::function<void(const std::string& json)> tell, std::string version);
+    /// The first job has the revision after `numbers_from`.
+    MakeSession(std::function<void(const std::string& json)> tell, std::string version, std::int64_t numbers_from = 0);
     ~MakeSession();
     MakeSession(const MakeSession&) = delete;
     MakeSession& operator=(const MakeSession&) = delete;
@@ -105,7 +107,8 @@ private:
     std::filesystem::path scratch_;  ///< folder for sliced jobs; deleted with the session
     mutable std::mutex mutex_;
     std::shared_ptr<OpenJob> job_, before_, other_;
-    int revision_ = 0, others_ = 0;
+    std::int64_t revision_;
+    int others_ = 0;
     JobUnderWay under_way_;
     std::atomic<bool> slicing_ = false, cancelled_ = false;
     std::thread thread_;

@@ -166,7 +166,7 @@ std::string GrowingPart::packet(int known, std::size_t from) const {
     return part_packet(part_, cured_ ? "cured" : "exposed", revision(), from);
 }
 
-std::string part_packet(const twin::CoarsePart& part, std::string_view kind, int revision, std::size_t from) {
+std::string part_packet(const twin::CoarsePart& part, std::string_view kind, std::int64_t revision, std::size_t from) {
     const auto& slabs = part.slabs();
     std::vector<float> heights;
     for (std::size_t s = from; s < slabs.size(); ++s) {

@@ -2,6 +2,7 @@
 // machine. Images are decoded and cells counted by the caller of look_at() and news(), never by the print's thread.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -67,7 +68,7 @@ private:
 };
 
 /// The slabs of a part from `from` on, in the format of GrowingPart::packet().
-[[nodiscard]] std::string part_packet(const twin::CoarsePart& part, std::string_view kind, int revision,
+[[nodiscard]] std::string part_packet(const twin::CoarsePart& part, std::string_view kind, std::int64_t revision,
                                       std::size_t from);
 
 /// The block compared with the drawing, for the report. The print must be over. Null if an image of the job cannot be

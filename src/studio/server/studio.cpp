@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -24,6 +26,12 @@ namespace {
 constexpr std::size_t most_undo = 200;
 constexpr std::string_view first_example = "cable_gripper";
 constexpr std::string_view host_path = "/api/print/host/";  // its interface has statuses of its own
+
+/// Since 1970.
+std::int64_t milliseconds_now() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+}
 
 std::string document_event(const Studio::Document& d) {
     const nlohmann::json json = {
@@ -95,12 +103,12 @@ Result<std::unique_ptr<Studio>> Studio::open(const Start& start) {
 }
 
 Studio::Studio(ProjectFolder folder, Start start)
-    : folder_(std::move(folder)), start_(std::move(start)), routes_(all_routes()) {
+    : folder_(std::move(folder)), start_(std::move(start)), routes_(all_routes()), numbers_from_(milliseconds_now()) {
     const auto send = [this](const std::string& json) { hub_.send_text(json); };
-    simulation_ = std::make_unique<SimulationSession>(
-        SessionEvents{send, [this](auto frame) { hub_.send_frame(frame); }, [this] { return hub_.fields(); }});
+    simulation_ = std::make_unique<SimulationSession>(SessionEvents{
+        send, [this](auto frame) { hub_.send_frame(frame); }, [this] { return hub_.fields(); }, false, numbers_from_});
     search_ = std::make_unique<SearchSession>(send);
-    make_ = std::make_unique<MakeSession>(send, start_.version);
+    make_ = std::make_unique<MakeSession>(send, start_.version, numbers_from_);
     print_ = std::make_unique<PrintSession>(send, start_.notify);
     queue_ = std::make_unique<PrintQueue>(folder_, send);
     projector_ = std::make_unique<ProjectorSession>();
@@ -319,7 +327,8 @@ SessionEvents Studio::events_beside() {
     const auto text = [this](const std::string& json) {
         hub_.send_text(fmt::format(R"({{"type":"beside","event":{}}})", json));
     };
-    return {text, [this](auto frame) { hub_.send_frame_beside(frame); }, [this] { return hub_.fields(); }, true};
+    return {text, [this](auto frame) { hub_.send_frame_beside(frame); }, [this] { return hub_.fields(); }, true,
+            numbers_from_};
 }
 
 Status Studio::compare(const std::string& name, const std::string& example) {

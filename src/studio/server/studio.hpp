@@ -2,6 +2,7 @@
 // socket.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -76,7 +77,7 @@ public:
         Accuracy accuracy = Accuracy::automatic;
         std::vector<std::string> outside{};  ///< paths outside the folder in the file with which the studio was started
         std::string title = "new";           ///< what pages call it while it has no name
-        int opened = 0;                      ///< number of the documents opened so far
+        std::int64_t opened = 0;             ///< number of this document
         std::string stamps{};                ///< ProjectFolder::stamps_of() it when it was built last
         bool windows_lines = false;          ///< lines of its file end with CR LF; here they always end with LF
 
@@ -138,9 +139,12 @@ private:
     std::unique_ptr<ProjectorSession> projector_;
     Thumbnails thumbnails_;
     std::vector<Route> routes_;
+    /// Robots and jobs are numbered from here, which no other studio does: a page that stays open while the studio is
+    /// started again, perhaps with another file, tells by the numbers that what it knows is of the one before.
+    const std::int64_t numbers_from_;
     std::mutex mutex_;  ///< guards what follows
     Document document_;
-    int opened_ = 0;  ///< see Document::opened
+    std::int64_t opened_ = numbers_from_;  ///< see Document::opened
     RobotText text_beside_;
     std::vector<std::string> outside_beside_;    ///< see Document::outside
     std::string title_beside_;                   ///< file that the second robot was opened from

@@ -30,7 +30,7 @@ std::optional<Accuracy> accuracy_named(std::string_view name) {
     return std::nullopt;
 }
 
-Built::Built(RobotText source_, robot::Scene scene_, int revision_)
+Built::Built(RobotText source_, robot::Scene scene_, std::int64_t revision_)
     : source(std::move(source_)),
       robot(std::move(scene_.robot)),
       model(std::move(scene_.model)),

@@ -1,6 +1,7 @@
 // A robot as built from its file for the page.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -33,16 +34,16 @@ struct RobotText {
     std::filesystem::path file;  ///< name in messages, and base of its relative paths
     std::string text;
     Accuracy accuracy = Accuracy::automatic;
-    int opened = 0;  ///< number of the document: the same for all texts of one robot
+    std::int64_t opened = 0;  ///< number of the document: the same for all texts of one robot
 };
 
 /// Everything that belongs to one robot; immutable once built.
 struct Built {
-    Built(RobotText source_, robot::Scene scene_, int revision_);
+    Built(RobotText source_, robot::Scene scene_, std::int64_t revision_);
     RobotText source;
     robot::Robot robot;
     sim::Model model;
-    int revision;
+    std::int64_t revision;
     view::Scene scene;
     std::unique_ptr<const Preview> preview;  ///< null: one model is used for everything
     double size_m;

@@ -32,7 +32,7 @@ constexpr std::chrono::milliseconds pause{80};      // after the last input befo
 constexpr double quick_s = 0.05;                    // per increment: fast enough for interaction
 constexpr double slow_s = 0.15;
 
-Result<std::shared_ptr<const Built>> made(RobotText source, int revision, Progress& watch) {
+Result<std::shared_ptr<const Built>> made(RobotText source, std::int64_t revision, Progress& watch) {
     std::vector<std::string> assignments;
     if (source.accuracy == Accuracy::preview) assignments.emplace_back("mesh.order=1");
     Result<robot::Robot> robot = robot::parse_robot(source.text, source.file, assignments);

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -29,7 +30,8 @@ struct SessionEvents {
     std::function<void(const std::string& json)> text;
     std::function<void(std::shared_ptr<const std::string> packet)> frame;
     std::function<std::set<std::string>()> fields;  ///< fields that some page shows
-    bool beside = false;  ///< it is the second robot, compared with the edited one, and its frames say so
+    bool beside = false;            ///< it is the second robot, compared with the edited one, and its frames say so
+    std::int64_t numbers_from = 0;  ///< the first robot that is built has the revision after this
 };
 
 class SimulationSession {
@@ -133,7 +135,7 @@ private:
     bool settled_ = true, playing_ = false;
     bool refining_ = false;     ///< the interactive robot has arrived, the fine one has not
     bool catching_up_ = false;  ///< the interactive robot is behind what was shown
-    int revision_ = 0;
+    std::int64_t revision_ = events_.numbers_from;
     std::uint64_t sequence_ = 0;
     std::chrono::steady_clock::time_point last_frame_at_{};
     std::thread thread_;
