@@ -1,4 +1,5 @@
 // Goals and identification: options, the search, its result.
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -29,6 +30,13 @@ Response unknowns(Studio& studio, const Request&) {
     return json_response(dumped(list));
 }
 
+/// The robot as its files are now, built anew if one of them has changed: what meshes it again would else mesh another
+/// one than the page shows.
+std::shared_ptr<const Built> built_as_files_are(Studio& studio) {
+    studio.look_at_files();
+    return studio.simulation().wait_until_built() ? studio.simulation().built() : nullptr;
+}
+
 Response begin_goal(Studio& studio, const Request& request) {
     auto built = studio.simulation().built();
     if (!built) return nothing_built();
@@ -40,7 +48,7 @@ Response begin_goal(Studio& studio, const Request& request) {
 }
 
 Response begin_identify(Studio& studio, const Request& request) {
-    auto built = studio.simulation().built();
+    auto built = built_as_files_are(studio);
     if (!built) return nothing_built();
     Result<IdentifyOrder> order = parse_identify_order(request.body);
     if (!order) return error_response(order.error());
@@ -58,7 +66,7 @@ Response begin_workspace(Studio& studio, const Request& request) {
 }
 
 Response begin_sweep(Studio& studio, const Request& request) {
-    auto built = studio.simulation().built();
+    auto built = built_as_files_are(studio);
     if (!built) return nothing_built();
     Result<SweepOrder> order = parse_sweep_order(request.body);
     if (!order) return error_response(order.error());

@@ -494,6 +494,25 @@ TEST_CASE("a text that leads outside since its base has changed is not built, an
     CHECK(ask(studio, "POST", "/api/job/slice", R"({"printer":"tower"})", "first_page").status == 422);
 }
 
+TEST_CASE("a sweep and an identification are of the robot that is shown, also when a file of it has changed") {
+    const Project project;
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
+    std::ofstream(project.base / "project" / "base.toml") << project_bar;
+    std::ofstream(project.base / "project" / "based.toml") << "robot = \"base.toml\"\n";
+    REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"based.toml"})", "first_page").status == 200);
+    REQUIRE(studio.simulation().wait_until_built());
+    std::int64_t shown = studio.simulation().built()->revision;
+    for (const auto& [path, order] :
+         {std::pair("/api/sweep", R"({"axes":[{"key":"mesh.size","unit":"mm","values":[1]}]})"),
+          std::pair("/api/identify", R"({"unknowns":["none"],"csv":"","file":"t.csv","judge":""})")}) {
+        std::ofstream(project.base / "project" / "base.toml", std::ios::app) << "# changed\n";
+        (void)ask(studio, "POST", path, order, "first_page");
+        CHECK_MESSAGE(studio.simulation().built()->revision == ++shown, path);
+    }
+}
+
 TEST_CASE("a file that was changed elsewhere is not saved over unasked") {
     const Project project;
     const auto owner = opened(project);
