@@ -182,6 +182,13 @@ test('a file without a program gets one at its end, one with a list on a line lo
   assert.equal(page.replaceEntries('program.key = [] # none\na = "#[" # b\n', 'program.key', key), `a = "#[" # b\n\n${key}\n`);
 });
 
+test('what the keys of a program drive is known, however they are written', () => {
+  const driven = (text) => [...page.drivenByKeys(text)].sort();
+  assert.deepEqual(driven('[[program.key]]\ntime = "1 s"\nflexor = 0.9 # a = 1\n\n[[program.key]]\ntime = "2 s"\n"left.1" = 0.8\n[program]\nsteps = 3\n'), ['flexor', 'left.1']);
+  assert.deepEqual(driven('[program]\nkey = [{ time = "1 s", flexor = 0.9 },\n  { time = "2 s", "air 1" = 1 }]\n'), ['air 1', 'flexor']);
+  assert.deepEqual(driven('[program]\nsteps = 3\n[cable]\nflexor = 1\n'), []);
+});
+
 test('a program has seconds if the file has keys for it', () => {
   assert.equal(page.hasProgramKeys(withKeys), true);
   assert.equal(page.hasProgramKeys('[program]\nkey = [{ time = 1 }]\n'), true);

@@ -344,4 +344,53 @@ Result<std::string> robot_text(std::string_view text, const fs::path& file, cons
     return config::toml_text(document->root);
 }
 
+namespace {
+
+/// The last key of the program that drives this; empty: none does. "program.key[1].flexor".
+std::string last_key_of(const config::Document& document, const std::string& name) {
+    const config::Value* program = entry_of(document.root, "program");
+    const config::Value* list = program != nullptr ? entry_of(*program, "key") : nullptr;
+    const auto* keys = list != nullptr ? std::get_if<config::Array>(&list->data) : nullptr;
+    if (keys == nullptr) return "";
+    for (std::size_t k = keys->size(); k > 0; --k) {
+        if (entry_of((*keys)[k - 1], name) != nullptr)
+            return fmt::format("program.key[{}].{}", k - 1, config::path_part(name));
+    }
+    return "";
+}
+
+/// True if `place` is the value of a target, of whatever kind, of this cable or chamber.
+bool is_target_value(const config::Place& place, const config::Value& actuator) {
+    constexpr std::string_view not_driven = "offset";
+    if (place.value == &actuator)
+        return place.rest.size() == 2 && place.rest[0] == "target" && place.rest[1] != not_driven;
+    const config::Value* target = entry_of(actuator, "target");
+    const auto* kinds = target != nullptr ? std::get_if<config::Table>(&target->data) : nullptr;
+    return kinds != nullptr && place.rest.empty() && std::ranges::any_of(*kinds, [&](const config::Entry& kind) {
+               return place.value == &kind.second && kind.first != not_driven;
+           });
+}
+
+}  // namespace
+
+std::string why_idle(const config::Document& document, std::string_view path) {
+    const config::Place place = config::place_of(document, path);
+    for (const std::string_view list : {"cable", "chamber"}) {
+        const config::Value* value = entry_of(document.root, list);
+        const auto* actuators = value != nullptr ? std::get_if<config::Array>(&value->data) : nullptr;
+        for (std::size_t k = 0; actuators != nullptr && k < actuators->size(); ++k) {
+            const config::Value& actuator = (*actuators)[k];
+            const config::Value* given = entry_of(actuator, "name");
+            const auto* name = given != nullptr ? std::get_if<std::string>(&given->data) : nullptr;
+            if (name == nullptr || !is_target_value(place, actuator)) continue;
+            const std::string key = last_key_of(document, *name);
+            if (key.empty()) return "";
+            return fmt::format(
+                "{} changes nothing, since keys of the program drive {} \"{}\" and say its targets; set {} instead",
+                path, list, *name, key);
+        }
+    }
+    return "";
+}
+
 }  // namespace pliant::robot

@@ -46,6 +46,10 @@ struct BasedDocument {
 /// have and nothing in it uses.
 [[nodiscard]] Status set_all(config::Document& document, const std::vector<std::string>& assignments);
 
+/// Why the value at `path` changes nothing: it is the target of a cable or chamber that keys of the program drive, and
+/// only its kind counts. Says which key to set instead; empty: nothing of that kind.
+[[nodiscard]] std::string why_idle(const config::Document& document, std::string_view path);
+
 /// The numbers of [parameters] that are written as numbers, not as formulas of others, in the order of the file.
 /// Errors: of the text and what it stands on, of an assignment.
 [[nodiscard]] Result<std::vector<std::pair<std::string, double>>> free_parameters(

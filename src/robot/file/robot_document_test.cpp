@@ -129,3 +129,29 @@ TEST_CASE("a mistake in the middle of a chain is told of the file that has it") 
     REQUIRE(write_file(folder / "b/b.toml", "robot = \"../c/none.toml\"\n"));
     CHECK(load_robot(folder / "a/a.toml").error().message.starts_with((folder / "c/none.toml").string() + ": "));
 }
+
+TEST_CASE("a target that keys of the program say is idle, and a robot with another one has a note") {
+    const std::string text = R"(name = "bar"
+length_unit = "mm"
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.4 }
+body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [40, 10, 10]] } }]
+fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
+cable = [{ name = "left.1", points = [[0, 2, 5], [40, 2, 5]], target = { tension = "1 N", offset = "0.1 N" } },
+         { name = "right", points = [[0, 8, 5], [40, 8, 5]], target = { length_ratio = 0.9 } }]
+program.key = [{ time = "1 s", "left.1" = "2 N" }, { time = "2 s", "left.1" = "1 N" }]
+)";
+    const std::string idle =
+        " changes nothing, since keys of the program drive cable \"left.1\" and say its targets; set "
+        "program.key[1].\"left.1\" instead";
+    const auto document = config::parse(text, "bar.toml");
+    REQUIRE(document);
+    for (const char* path : {"cable.\"left.1\".target.tension", "cable[0].target.tension"})
+        CHECK(why_idle(*document, path) == path + idle);
+    for (const char* path : {"cable[0].target.offset", "cable[0].friction", "cable[1].target.length_ratio",
+                             "program.key[1].\"left.1\"", "cable[2].target.tension"})
+        CHECK_MESSAGE(why_idle(*document, path).empty(), path);
+    CHECK(parse_robot(text, "bar.toml")->notes.empty());
+    const auto robot = parse_robot(text, "bar.toml", {"cable[0].target.tension=3 N", "cable[0].friction=0.1"});
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->notes == std::vector<std::string>{"cable[0].target.tension" + idle});
+}

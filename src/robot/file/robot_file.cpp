@@ -74,6 +74,10 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     Reader root(document.root, problems);
     Robot robot;
     robot.file = document.file;
+    for (const std::string& assignment : assignments) {
+        if (std::string why = why_idle(document, assignment.substr(0, assignment.find('='))); !why.empty())
+            robot.notes.push_back(std::move(why));
+    }
     robot.name = root.text("name");
     refuse_blank(root, robot.name);
     const std::string unit = root.text("length_unit");

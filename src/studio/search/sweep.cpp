@@ -12,6 +12,7 @@
 #include "base/core/part_of_work.hpp"
 #include "presentation/report/units.hpp"
 #include "robot/bodies/build.hpp"
+#include "robot/file/robot_document.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/scene/build_model.hpp"
@@ -109,12 +110,17 @@ bool changes_mesh(const std::string& key) {
 }
 
 Status check_axes(const RobotText& source, const SweepOrder& order) {
-    const auto document = config::parse(source.text, source.file);
-    if (!document) return tl::unexpected(document.error());
+    auto own = config::parse(source.text, source.file);
+    if (!own) return tl::unexpected(own.error());
+    const auto based = robot::on_base(std::move(*own));
+    if (!based) return tl::unexpected(based.error());
+    const config::Document& document = based->document;
     std::map<config::Place, std::string> places;
     for (const SweepAxis& axis : order.axes) {
-        const auto [other, is_new] = places.emplace(config::place_of(*document, axis.key), axis.key);
+        const auto [other, is_new] = places.emplace(config::place_of(document, axis.key), axis.key);
         if (!is_new) return input_error("sweep: {} sets what {} sets; only one of them may", axis.key, other->second);
+        if (const std::string why = robot::why_idle(document, axis.key); !why.empty())
+            return input_error("sweep: {}", why);
     }
     return {};
 }

@@ -27,7 +27,8 @@ struct Sweep {
     std::vector<SweepRun> runs;  ///< the last axis changes first
 };
 
-/// Error: both axes set one number of the robot of `source`, however they write it; only one of the two would count.
+/// Error: both axes set one number of the robot of `source`, however they write it; only one of the two would count;
+/// or one sets a target that keys of the program say, which would change nothing.
 [[nodiscard]] Status check_axes(const RobotText& source, const SweepOrder& order);
 
 /// Runs the robot of `source` with every combination of values, each from rest. The mesh is reused if no key changes

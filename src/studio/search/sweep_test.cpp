@@ -52,6 +52,17 @@ TEST_CASE("two axes that set one number, however they write it, are refused") {
     CHECK(check_axes(source(), {{by_name, {"material.soft.youngs_modulus", "MPa", {1}}}}));
 }
 
+TEST_CASE("a target that keys of the program say is refused, and the key is named") {
+    const std::string keys = "[[program.key]]\ntime = \"1 s\"\nflexor = \"0.1 mm\"\n";
+    const RobotText keyed{"bar.toml", bar + ("\n" + keys), Accuracy::preview};
+    const Status refused = check_axes(keyed, {{{"cable[0].target.shortening", "mm", {0.1, 0.2}}}});
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message ==
+          "sweep: cable[0].target.shortening changes nothing, since keys of the program drive cable \"flexor\" and say "
+          "its targets; set program.key[0].flexor instead");
+    CHECK(check_axes(keyed, {{{"program.key[0].flexor", "mm", {0.1, 0.2}}}}));
+}
+
 TEST_CASE("each run of a sweep is the program with --set, and the tension is proportional to the modulus") {
     const SweepOrder order{{{"material.soft.youngs_modulus", "MPa", {1, 2, 4}}}};
     const auto sweep = run_sweep(source(), order, unwatched);

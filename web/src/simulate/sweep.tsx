@@ -9,7 +9,7 @@ import { setValues, theirs } from './editor';
 import { columnOf, evenly, extent, quantity, sweepCsv, ticks, type SweepFound } from './response';
 import { saveBlob } from './save';
 import { begin, isOfBefore, resultOf, Search } from './search';
-import { keyOf, parametersOf } from './toml_edit';
+import { drivenByKeys, keyOf, parametersOf } from './toml_edit';
 import { freeRunName, runs } from './tracks';
 import * as look from './view_state';
 
@@ -47,9 +47,10 @@ async function learn() {
   const head = scene.peek()?.head;
   if (!head) return;
   const list: Known[] = parametersOf(theirs.peek()).map((p) => ({ key: `parameters.${p.name}`, value: p.value, unit: '' }));
+  const driven = drivenByKeys(theirs.peek()); // their targets are those of the keys
   for (const a of head.actuators) {
     const [name, unit] = targets[a.kind] ?? [];
-    if (name !== undefined) list.push({ key: keyOf(a.type, a.name, 'target', name), value: a.target, unit });
+    if (name !== undefined && !driven.has(a.name)) list.push({ key: keyOf(a.type, a.name, 'target', name), value: a.target, unit });
   }
   const more = (await (await api('/api/unknowns')).json()) as { key: string; shown: string }[];
   for (const one of more) {

@@ -101,6 +101,24 @@ export function hasProgramKeys(text: string): boolean {
   });
 }
 
+/// The names of what the keys of a file's program drive.
+export function drivenByKeys(text: string): Set<string> {
+  const names = new Set<string>();
+  const add = (key: string) => {
+    const name = key.replace(/^"(.*)"$|^'(.*)'$/, '$1$2').replace(/\\(["\\])/g, '$1');
+    if (name && name !== 'time') names.add(name);
+  };
+  let table = '';
+  for (const { kind, name, text: piece } of piecesOf(text)) {
+    if (kind === 'header') table = name;
+    if (kind !== 'key') continue;
+    if (table === 'program.key') add(piece.split('=')[0].trim());
+    else if ((table ? `${table}.${name}` : name) === 'program.key')
+      for (const [, key] of piece.slice(piece.indexOf('=') + 1).matchAll(/[{,]\s*("(?:[^"\\]|\\.)*"|'[^']*'|[A-Za-z0-9_-]+)\s*=/g)) add(key);
+  }
+  return names;
+}
+
 /// The file with these entries in the place of all entries of a list, such as program.key. Everything else stays,
 /// comments on lines of their own too.
 export function replaceEntries(text: string, list: string, entries: string): string {
