@@ -644,6 +644,8 @@ test('a sweep has even values, round ticks, and a table column for each result',
   };
   assert.deepEqual(page.columnOf(found, 1), [4, NaN]);
   assert.equal(page.sweepCsv(found), 'material.soft.youngs_modulus_MPa,flexor_tension_N,"my tip_x_mm"\r\n1,3,4\r\n2,,\r\n');
+  const warned = { ...found, runs: [{ ...found.runs[0], warning: 'below a "vacuum"' }, found.runs[1]] };
+  assert.equal(page.sweepCsv(warned, true), 'material.soft.youngs_modulus_MPa,flexor_tension_N,"my tip_x_mm",elements,warning\r\n1,3,4,1,"below a ""vacuum"""\r\n2,,,1,\r\n');
 });
 
 test('a geometry file becomes a robot: with its unit and bodies, fixed at one end of its longest side', () => {

@@ -25,9 +25,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The result of a search of this robot.
+/// The result of a search of this robot. `order`: of its elements; linear ones are too stiff for a result.
 Json result_json(const char* kind, const Built& built, Json found) {
-    return {{"kind", kind}, {"revision", built.revision}, {"opened", built.source.opened}, {"found", std::move(found)}};
+    return {{"kind", kind},
+            {"revision", built.revision},
+            {"opened", built.source.opened},
+            {"order", built.model.mesh().order},
+            {"found", std::move(found)}};
 }
 
 /// The waypoints as a program of the robot's own file, as `pliant inverse` writes one: `keys`, and `changes` of other

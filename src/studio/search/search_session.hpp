@@ -19,7 +19,8 @@ namespace pliant::studio {
 
 /// Result of a search.
 struct SearchResult {
-    std::string json;  ///< {"kind": "goal", "identify", "workspace", "sweep" or "motion", "revision", "found": ...}
+    std::string json;  ///< {"kind": "goal", "identify", "workspace", "sweep" or "motion", "revision", "opened",
+                       ///< "order", "found": ...}
     struct Plot {
         std::string unit;  ///< of the values
         std::string png;

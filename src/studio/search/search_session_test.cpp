@@ -97,6 +97,7 @@ TEST_CASE("a search reports its end, and its result is kept until the next searc
     CHECK(result["kind"] == "goal");
     CHECK(result["revision"] == built->revision);
     CHECK(result["opened"] == built->source.opened);
+    CHECK(result["order"] == built->model.mesh().order);
     CHECK(result["program"]["keys"].get<std::string>().starts_with("[[program.key]]\ntime = \"1 s\"\n\"flexor\" = \""));
     CHECK(result["program"]["changes"][0] == Json{{"key", "program.steps"}, {"value", 10}});
     CHECK(result["program"]["changes"][1] == Json{{"key", "program.duration"}, {"value", "1 s"}});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -27,6 +28,7 @@ using Json = nlohmann::json;
 struct Row {
     std::vector<SweepColumn> columns;
     std::vector<double> values;
+    std::string warning;  ///< see SweepRun::warning
     void add(const std::string& name, const char* what, const char* label, const char* unit, double value) {
         columns.push_back({name.empty() ? what : name + "_" + what, name.empty() ? label : name + ": " + label, unit});
         values.push_back(value);
@@ -58,6 +60,16 @@ Row row_of(const sim::Step& rest, const sim::Step& end) {
     for (const sim::SupportState& s : end.supports) row.add(s.name, "force_N", "reaction", "N", norm(s.force_N));
     row.add("", "energy_mJ", "energy", "mJ", 1e3 * end.energy_J);
     return row;
+}
+
+/// Notes on the robot at rest are shown with it, and would be those of every run.
+std::string warning_of(const sim::Model& model, const sim::Trajectory& trajectory) {
+    const std::vector<std::string>& notes = model.description().notes;
+    std::string all;
+    for (const std::string& warning : trajectory.warnings) {
+        if (std::ranges::find(notes, warning) == notes.end()) all += (all.empty() ? "" : "; ") + warning;
+    }
+    return all;
 }
 
 std::string assignment(const SweepAxis& axis, double value) {
@@ -95,7 +107,9 @@ Result<Row> end_of(const RobotText& source, const std::vector<std::string>& assi
     const sim::Trajectory trajectory = sim::run(*model, robot->program, progress);
     if (progress.cancelled()) return tl::unexpected(cancelled());
     if (!trajectory.converged) return failure("{}", trajectory.message);
-    return row_of(trajectory.steps.front(), trajectory.steps.back());
+    Row row = row_of(trajectory.steps.front(), trajectory.steps.back());
+    row.warning = warning_of(*model, trajectory);
+    return row;
 }
 
 }  // namespace
@@ -145,7 +159,8 @@ Result<Sweep> run_sweep(const RobotText& source, const SweepOrder& order, Progre
         // A key may add or remove results, such as a repeat count: a plot needs the same ones everywhere.
         const bool same = row && row->columns.size() == sweep.columns.size();
         sweep.runs.push_back({all[k], same ? std::move(row->values) : std::vector<double>(),
-                              row ? (same ? "" : "its results are not those of the first run") : row.error().message});
+                              row ? (same ? "" : "its results are not those of the first run") : row.error().message,
+                              same ? std::move(row->warning) : ""});
     }
     if (sweep.columns.empty()) return tl::unexpected(*first);
     return sweep;
@@ -158,7 +173,7 @@ std::string sweep_json(const SweepOrder& order, const Sweep& sweep) {
     for (const SweepColumn& column : sweep.columns)
         columns.push_back({{"key", column.key}, {"label", column.label}, {"unit", column.unit}});
     for (const SweepRun& run : sweep.runs)
-        runs.push_back({{"inputs", run.inputs}, {"results", run.results}, {"why", run.why}});
+        runs.push_back({{"inputs", run.inputs}, {"results", run.results}, {"why", run.why}, {"warning", run.warning}});
     return dumped({{"axes", axes}, {"columns", columns}, {"runs", runs}});
 }
 

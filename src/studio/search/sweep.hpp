@@ -20,6 +20,7 @@ struct SweepRun {
     std::vector<double> inputs;   ///< (axes)
     std::vector<double> results;  ///< (columns); empty if there is no equilibrium
     std::string why;              ///< reason if there is none
+    std::string warning;          ///< reasons not to trust the results; without the notes on the robot itself
 };
 
 struct Sweep {
@@ -38,7 +39,8 @@ struct Sweep {
 /// True if a key affects the geometry, or the mesh size.
 [[nodiscard]] bool changes_mesh(const std::string& key);
 
-/// {"axes": [{"key", "unit", "values"}], "columns": [{"key", "label", "unit"}], "runs": [{"inputs", "results", "why"}]}
+/// {"axes": [{"key", "unit", "values"}], "columns": [{"key", "label", "unit"}], "runs": [{"inputs", "results", "why",
+/// "warning"}]}
 [[nodiscard]] std::string sweep_json(const SweepOrder& order, const Sweep& sweep);
 
 }  // namespace pliant::studio

@@ -63,6 +63,28 @@ TEST_CASE("a target that keys of the program say is refused, and the key is name
     CHECK(check_axes(keyed, {{{"program.key[0].flexor", "mm", {0.1, 0.2}}}}));
 }
 
+TEST_CASE("a run of a sweep says why not to trust it") {
+    // A pressure far below a vacuum: no pump reaches such a volume.
+    const RobotText vacuum{"cube.toml", R"(name = "cube"
+length_unit = "mm"
+material.soft = { youngs_modulus = "10 MPa", poisson_ratio = 0.45 }
+body = [{ name = "cube", material = "soft", geometry = { difference = [{ box = [[0, 0, 0], [4, 4, 4]] },
+                                                                      { box = [[1, 1, 1], [3, 3, 3]] }] } }]
+fixed = [{ name = "base", box = [[0, 0, 0], [4, 4, 0]] }]
+chamber = [{ name = "air", inside = [2, 2, 2], target = { volume_ratio = 0.99 } }]
+mesh = { size = "1 mm", order = 1 }
+program.steps = 2
+)",
+                           Accuracy::preview};
+    const SweepOrder order{{{"chamber.air.target.volume_ratio", "", {1, 0.9}}}};
+    const auto sweep = run_sweep(vacuum, order, unwatched);
+    REQUIRE_MESSAGE(sweep, (sweep ? "" : sweep.error().message));
+    CHECK(sweep->runs[0].warning == "");
+    CHECK(sweep->runs[1].why == "");
+    CHECK(holds(sweep->runs[1].warning, "below a vacuum"));
+    CHECK(Json::parse(sweep_json(order, *sweep))["runs"][1]["warning"] == sweep->runs[1].warning);
+}
+
 TEST_CASE("each run of a sweep is the program with --set, and the tension is proportional to the modulus") {
     const SweepOrder order{{{"material.soft.youngs_modulus", "MPa", {1, 2, 4}}}};
     const auto sweep = run_sweep(source(), order, unwatched);

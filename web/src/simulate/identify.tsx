@@ -4,7 +4,7 @@ import { counted } from '../counted';
 import { enlarged } from '../print/enlarged';
 import { api, mayDrive, say, scene } from '../store';
 import { pinNow, setValues } from './editor';
-import { begin, type IdentifyFound, isOfBefore, resultNumber, resultOf, Search } from './search';
+import { begin, type IdentifyFound, isOfBefore, resultNumber, resultOf, RoughNote, Search } from './search';
 import { changeOf } from './toml_edit';
 import { judgeRows } from './tracks';
 
@@ -133,6 +133,7 @@ function Found() {
   return (
     <div data-testid="identify-found">
       {isOfBefore(last) && <p class="quiet">The robot has been changed since these values were found.</p>}
+      <RoughNote of={last} />
       <table class="readings">
         <thead>
           <tr>

@@ -3,7 +3,7 @@
 export interface SweepFound {
   axes: { key: string; unit: string; values: number[] }[];
   columns: { key: string; label: string; unit: string }[];
-  runs: { inputs: number[]; results: number[]; why: string }[]; // the last axis varies fastest
+  runs: { inputs: number[]; results: number[]; why: string; warning?: string }[]; // the last axis varies fastest
 }
 
 /// `count` evenly spaced numbers, including both ends.
@@ -38,10 +38,12 @@ export const columnOf = (found: SweepFound, column: number): number[] => found.r
 
 const cell = (s: string) => (/^[A-Za-z0-9_.-]+$/.test(s) ? s : `"${s.replace(/"/g, '""')}"`);
 
-/// All runs as a table; inputs are named by key and unit.
-export function sweepCsv(found: SweepFound): string {
-  const head = [...found.axes.map((a) => (a.unit ? `${a.key}_${a.unit}` : a.key)), ...found.columns.map((c) => c.key)];
-  const rows = found.runs.map((r) => [...r.inputs, ...found.columns.map((_, k) => r.results[k] ?? '')].join(','));
+/// All runs as a table; inputs are named by key and unit. As in exported histories, `elements` tells linear ones.
+export function sweepCsv(found: SweepFound, linear = false): string {
+  const warned = found.runs.some((r) => r.warning);
+  const quoted = (s: string) => (s === '' ? '' : `"${s.replace(/"/g, '""')}"`);
+  const head = [...found.axes.map((a) => (a.unit ? `${a.key}_${a.unit}` : a.key)), ...found.columns.map((c) => c.key), ...(linear ? ['elements'] : []), ...(warned ? ['warning'] : [])];
+  const rows = found.runs.map((r) => [...r.inputs, ...found.columns.map((_, k) => r.results[k] ?? ''), ...(linear ? [1] : []), ...(warned ? [quoted(r.warning ?? '')] : [])].join(','));
   return [head.map(cell).join(','), ...rows].join('\r\n') + '\r\n';
 }
 

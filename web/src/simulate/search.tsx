@@ -35,6 +35,7 @@ interface Result {
   kind?: Kind;
   revision?: number; // of the robot that was searched
   opened?: number; // its number
+  order?: number; // of its elements
   found?: unknown;
   program?: GoalProgram;
 }
@@ -48,6 +49,10 @@ export const resultOf = (kind: Kind): Result | null =>
   result.value.kind === kind && result.value.opened === scene.value?.head.opened && refused.value?.kind !== kind ? result.value : null;
 /// The robot was changed after this search.
 export const isOfBefore = (last: Result) => last.revision !== scene.value?.head.revision;
+/// Computed with linear elements, which are too stiff.
+export const isRoughResult = (last: Result) => last.order === 1;
+export const RoughNote = ({ of }: { of: Result }) =>
+  isRoughResult(of) ? <p class="quiet" data-testid="rough-result">≈ Computed with linear elements: forces come out too large, displacements too small.</p> : null;
 /// Counts results, so that pictures of different results have different addresses.
 export const resultNumber = signal(0);
 

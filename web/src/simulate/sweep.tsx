@@ -8,7 +8,7 @@ import { fieldColour, gradientCss } from './colormap';
 import { setValues, theirs } from './editor';
 import { columnOf, evenly, extent, quantity, sweepCsv, ticks, type SweepFound } from './response';
 import { saveBlob } from './save';
-import { begin, isOfBefore, resultOf, Search } from './search';
+import { begin, isOfBefore, isRoughResult, resultOf, RoughNote, Search } from './search';
 import { drivenByKeys, keyOf, parametersOf } from './toml_edit';
 import { freeRunName, runs } from './tracks';
 import * as look from './view_state';
@@ -175,7 +175,7 @@ function Curve({ found, values }: { found: SweepFound; values: number[] }) {
       <path class="response-line" d={path} />
       {order.map((k) =>
         Number.isFinite(values[k]) ? (
-          <circle key={k} class={`response-dot ${chosen.value === k ? 'chosen' : ''}`} cx={x(inputs[k])} cy={y(values[k])} r={chosen.value === k ? 6 : 4} onClick={() => (chosen.value = k)} />
+          <circle key={k} class={`response-dot ${chosen.value === k ? 'chosen' : ''} ${found.runs[k].warning ? 'warned' : ''}`} cx={x(inputs[k])} cy={y(values[k])} r={chosen.value === k ? 6 : 4} onClick={() => (chosen.value = k)} />
         ) : (
           <path key={k} class="response-cross" d={`M${x(inputs[k]) - 4} ${size.height - size.bottom - 8}l8 8m0-8l-8 8`} onClick={() => (chosen.value = k)} />
         ),
@@ -201,6 +201,7 @@ function Heat({ found, values }: { found: SweepFound; values: number[] }) {
           <g key={k} onClick={() => (chosen.value = k)}>
             <rect class={`heat ${chosen.value === k ? 'chosen' : ''}`} {...at} width={w} height={h} style={{ fill }} />
             {!Number.isFinite(v) && <path class="response-cross" d={`M${at.x + w / 2 - 4} ${at.y + h / 2 - 4}l8 8m0-8l-8 8`} />}
+            {found.runs[k].warning && <text class="heat-warned" x={at.x + w / 2} y={at.y + h / 2} text-anchor="middle" dominant-baseline="central">!</text>}
           </g>
         );
       })}
@@ -224,6 +225,7 @@ function Chosen({ found }: { found: SweepFound }) {
       <p>
         {found.axes.map((a, k) => `${shortKey(a).split(',')[0]} ${show(run.inputs[k])}${a.unit && ` ${a.unit}`}`).join(', ')}
         {run.why && <span class="limit"> {run.why}</span>}
+        {run.warning && <span class="limit" data-testid="sweep-warning"> {run.warning}</span>}
       </p>
       <button class="small" disabled={!mayDrive.value} data-testid="sweep-use" onClick={() => void setValues(found.axes.map((a, k) => assignment(a, run.inputs[k])))}>
         Use these values
@@ -233,10 +235,10 @@ function Chosen({ found }: { found: SweepFound }) {
 }
 
 /// The sweep as a run that plots can overlay.
-function overlay(found: SweepFound) {
+function overlay(found: SweepFound, rough: boolean) {
   const columns: Record<string, number[]> = Object.fromEntries(found.columns.map((c, k) => [c.key, columnOf(found, k)]));
   found.axes.forEach((a, k) => (columns[a.key] = found.runs.map((r) => r.inputs[k])));
-  runs.value = [...runs.value, { name: freeRunName('sweep'), columns }];
+  runs.value = [...runs.value, { name: freeRunName(rough ? '≈ sweep' : 'sweep'), columns }];
 }
 
 function Found() {
@@ -246,12 +248,16 @@ function Found() {
   const at = Math.max(found.columns.findIndex((c) => c.key === column.value), 0);
   const values = columnOf(found, at);
   const of = found.columns[at];
+  const rough = isRoughResult(last);
+  const sign = rough ? '≈ ' : '';
   const failed = found.runs.filter((r) => r.why).length;
+  const warned = found.runs.filter((r) => r.warning).length;
   const two = found.axes.length === 2;
   const [low, high] = extent(values);
   return (
     <div class="search" data-testid="sweep-found">
       {isOfBefore(last) && <p class="quiet">The robot has been changed since this sweep.</p>}
+      <RoughNote of={last} />
       <label class="row">
         Result
         <select value={of.key} onChange={(e) => (column.value = e.currentTarget.value)} data-testid="sweep-result">
@@ -264,21 +270,26 @@ function Found() {
         <svg viewBox={`0 0 ${size.width} ${size.height}`} role="img" aria-label={`${of.label} over ${found.axes.map((a) => a.key).join(' and ')}; the table below has its numbers`} data-testid="sweep-plot">
           {two ? <Heat found={found} values={values} /> : <Curve found={found} values={values} />}
           <text class="axis-text" x={(size.left + size.width - size.right) / 2} y={size.height - 6} text-anchor="middle">{shortKey(found.axes[0])}</text>
-          <text class="axis-text" transform={`translate(11 ${(size.top + size.height - size.bottom) / 2}) rotate(-90)`} text-anchor="middle">{two ? shortKey(found.axes[1]) : `${of.label}${of.unit && `, ${of.unit}`}`}</text>
+          <text class="axis-text" transform={`translate(11 ${(size.top + size.height - size.bottom) / 2}) rotate(-90)`} text-anchor="middle">{two ? shortKey(found.axes[1]) : `${sign}${of.label}${of.unit && `, ${of.unit}`}`}</text>
         </svg>
         {two && (
           <div class="heat-legend">
             <span>{show(low)}</span>
             <span class="bar" style={{ background: gradientCss(look.map.value, 0, 'to right') }} />
-            <span>{show(high)} {of.unit}</span>
+            <span>{sign}{show(high)} {of.unit}</span>
           </div>
         )}
       </figure>
       {failed > 0 && <p class="limit">{failed} of {counted(found.runs.length, 'run')} {failed === 1 ? 'has' : 'have'} no result, marked ×: choose one to see why.</p>}
+      {warned > 0 && (
+        <p class="limit" data-testid="sweep-warned">
+          {warned} of {counted(found.runs.length, 'run')} {warned === 1 ? 'has' : 'have'} a result with a warning not to trust it, marked {two ? '!' : 'by a hollow point'}: choose one to read it.
+        </p>
+      )}
       <Chosen found={found} />
       <div class="row left wrap">
-        <button class="small" onClick={() => saveBlob(new Blob([sweepCsv(found)], { type: 'text/csv' }), 'sweep.csv')} data-testid="sweep-csv">CSV</button>
-        <button class="small" onClick={() => overlay(found)} data-testid="sweep-overlay">Overlay on plots</button>
+        <button class="small" onClick={() => saveBlob(new Blob([sweepCsv(found, rough)], { type: 'text/csv' }), 'sweep.csv')} data-testid="sweep-csv">CSV</button>
+        <button class="small" onClick={() => overlay(found, rough)} data-testid="sweep-overlay">Overlay on plots</button>
       </div>
       <details>
         <summary>Table</summary>
@@ -287,7 +298,7 @@ function Found() {
             <thead>
               <tr>
                 {found.axes.map((a) => <th key={a.key}>{shortKey(a)}</th>)}
-                <th>{of.label}{of.unit && `, ${of.unit}`}</th>
+                <th>{sign}{of.label}{of.unit && `, ${of.unit}`}</th>
                 <th><span class="unseen">Choose</span></th>
               </tr>
             </thead>
@@ -295,7 +306,7 @@ function Found() {
               {found.runs.map((r, k) => (
                 <tr key={k} class={chosen.value === k ? 'chosen' : ''}>
                   {r.inputs.map((v, i) => <td key={i}>{show(v)}</td>)}
-                  <td>{Number.isFinite(values[k]) ? show(values[k]) : '×'}</td>
+                  <td>{Number.isFinite(values[k]) ? `${show(values[k])}${r.warning ? ' !' : ''}` : '×'}</td>
                   <td><button class="small" aria-pressed={chosen.value === k} aria-label={`Choose run ${k + 1}`} onClick={() => (chosen.value = k)} data-testid={`sweep-run-${k}`}>choose</button></td>
                 </tr>
               ))}

@@ -5,7 +5,7 @@ import { NumberField } from '../number_field';
 import { mayDrive, scene } from '../store';
 import { inputs, Ranges } from './goal';
 import { saveBlob } from './save';
-import { begin, resultOf, Search } from './search';
+import { begin, resultOf, RoughNote, Search } from './search';
 
 interface Reach {
   name: string;
@@ -23,10 +23,11 @@ const side = signal(7);
 const between = signal(20);
 const shown = signal<string | null>(null); // the displayed marker; null: the first
 
-const found = computed(() => {
+const current = computed(() => {
   const last = resultOf('workspace');
-  return last?.revision === scene.value?.head.revision ? ((last?.found as WorkspaceFound | undefined) ?? null) : null;
+  return last?.revision === scene.value?.head.revision ? last : null;
 });
+const found = computed(() => (current.value?.found as WorkspaceFound | undefined) ?? null);
 /// What the view draws; null: nothing.
 export const reach = computed<Reach | null>(() => {
   const list = found.value?.reach ?? [];
@@ -55,6 +56,7 @@ function Found() {
   if (!f) return null;
   return (
     <div class="search" data-testid="workspace-found">
+      <RoughNote of={current.value!} />
       <p>
         Equilibrium found at {f.summary.found} of {counted(f.summary.samples, 'sample')}.
       </p>
