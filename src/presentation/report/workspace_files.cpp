@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/core/counted.hpp"
 #include "base/core/csv.hpp"
 #include "base/core/json.hpp"
 #include "base/core/vec3.hpp"
@@ -53,6 +54,31 @@ std::string row(const WorkspaceReport& r, std::size_t piece, const WorkspaceSamp
     for (const double pressure : sample.pressures_Pa) number(1e-3 * pressure);
     cells.resize(columns);
     return fmt::format("{}\n", fmt::join(cells, ","));
+}
+
+/// Chambers whose pressure falls below a vacuum, which no air can do, one sentence each.
+std::vector<std::string> impossible_samples(const WorkspaceReport& r) {
+    constexpr double rounding = 1e-6;
+    const sim::Description& d = r.model.description();
+    const double least_Pa = -d.ambient_pressure_Pa;
+    std::vector<std::string> warnings;
+    for (std::size_t c = 0; c < d.chambers.size(); ++c) {
+        std::size_t below = 0;
+        double worst_Pa = 0;
+        for (const WorkspacePiece& piece : r.workspace.pieces) {
+            for (const WorkspaceSample& sample : piece.samples) {
+                if (!sample.found || !(sample.pressures_Pa[c] < (1 + rounding) * least_Pa)) continue;
+                ++below;
+                worst_Pa = std::min(worst_Pa, sample.pressures_Pa[c]);
+            }
+        }
+        if (below == 0) continue;
+        warnings.push_back(fmt::format(
+            "at {} the pressure in chamber \"{}\" is below a vacuum, down to {:.4g} kPa: air cannot pull by more than "
+            "{:.4g} kPa (program.ambient_pressure), so that no pump reaches such a volume",
+            counted(below, "sample"), d.chambers[c].name, 1e-3 * worst_Pa, -1e-3 * least_Pa));
+    }
+    return warnings;
 }
 
 /// Every found sample of the sheets as a point, and the cells between them.
@@ -147,6 +173,7 @@ std::string workspace_json(const WorkspaceReport& r, int indent) {
         out["markers"][markers[m].name] = {{"low_mm", {low.x, low.y, low.z}}, {"high_mm", {high.x, high.y, high.z}}};
     }
     if (const std::string why = sim::inverse::why_nothing_is_found(r.workspace); !why.empty()) out["message"] = why;
+    if (const std::vector<std::string> warnings = impossible_samples(r); !warnings.empty()) out["warnings"] = warnings;
     return json_text(out, indent) + "\n";
 }
 

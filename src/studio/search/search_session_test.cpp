@@ -163,6 +163,28 @@ TEST_CASE("a workspace holds what each marker can reach") {
     CHECK(holds(workspace_task(*built_from(blind), order).error().message, "has no [[marker]]"));
 }
 
+TEST_CASE("a workspace says which chambers would have to pull harder than a vacuum") {
+    const auto built = built_from(R"(name = "cube"
+length_unit = "mm"
+material.soft = { youngs_modulus = "10 MPa", poisson_ratio = 0.45 }
+body = [{ name = "cube", material = "soft", geometry = { difference = [{ box = [[0, 0, 0], [4, 4, 4]] },
+                                                                      { box = [[1, 1, 1], [3, 3, 3]] }] } }]
+fixed = [{ name = "base", box = [[0, 0, 0], [4, 4, 0]] }]
+marker = [{ name = "top", point = [2, 2, 4] }]
+chamber = [{ name = "air", inside = [2, 2, 2], target = { volume_ratio = 0.99 } }]
+mesh = { size = "1 mm", order = 1 }
+)");
+    const WorkspaceOrder order{{{"air", 0.9, 1}}, 3, 0};
+    const auto task = workspace_task(*built, order);
+    REQUIRE(task);
+    SearchBench b;
+    REQUIRE(b.session.find_workspace(built, *task, order));
+    CHECK(b.end() == "");
+    const Json summary = b.result()["found"]["summary"];
+    REQUIRE(summary["warnings"].size() == 1);
+    CHECK(holds(summary["warnings"][0].get<std::string>(), "the pressure in chamber \"air\" is below a vacuum"));
+}
+
 TEST_CASE("a sweep and a whole program run in the background, and the program's states can be played") {
     const auto built = built_from(bar);
     SearchBench b;

@@ -14,7 +14,7 @@ interface Reach {
   points: number[];
 }
 interface WorkspaceFound {
-  summary: { samples: number; found: number; markers: Record<string, { low_mm: number[]; high_mm: number[] }> };
+  summary: { samples: number; found: number; warnings?: string[]; markers: Record<string, { low_mm: number[]; high_mm: number[] }> };
   reach: Reach[];
   csv: string;
 }
@@ -60,6 +60,7 @@ function Found() {
       <p>
         Equilibrium found at {f.summary.found} of {counted(f.summary.samples, 'sample')}.
       </p>
+      {f.summary.warnings?.map((warning) => <p class="limit" key={warning} data-testid="workspace-warning">{warning}</p>)}
       <table class="readings">
         <thead>
           <tr>
