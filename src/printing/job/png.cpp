@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csetjmp>
 #include <cstring>
 #include <memory>
 #include <span>
@@ -132,11 +133,14 @@ struct FreeDecompressor {
     void operator()(libdeflate_decompressor* d) const { libdeflate_free_decompressor(d); }
 };
 
+/// The rest of a PNG's header after its size: 8 bits, grey, deflate, adaptive filters, not interlaced.
+constexpr std::string_view plain_grey{"\x08\0\0\0\0", 5};
+
 /// The pixels of a file in the form that encode_png() writes: one IDAT, rows unfiltered or as differences to the row
 /// above. False for any other file, which is left to libpng. Three times as fast as libpng.
 bool decode_own(std::string_view png, const PngSize& size, slice::Image& image) {
     constexpr std::size_t data_at = 41;  // signature, IHDR, header of IDAT
-    if (png.size() < data_at + 16 || png.substr(37, 4) != "IDAT") return false;
+    if (png.size() < data_at + 16 || png.substr(24, 5) != plain_grey || png.substr(37, 4) != "IDAT") return false;
     const std::size_t length = get_u32(png, 33);
     if (length > png.size() - data_at - 16 || png.substr(data_at + length + 8, 4) != "IEND") return false;
     if (libdeflate_crc32(0, png.data() + 37, length + 4) != get_u32(png, data_at + length)) return false;
@@ -165,6 +169,97 @@ bool decode_own(std::string_view png, const PngSize& size, slice::Image& image) 
     return true;
 }
 
+/// Bytes for libpng, and its words about an error.
+struct PngSource {
+    std::string_view left;
+    std::array<char, 128> why{};
+};
+
+void give_png_bytes(png_structp png, png_bytep to, std::size_t count) {
+    auto& source = *static_cast<PngSource*>(png_get_io_ptr(png));
+    if (count > source.left.size()) png_error(png, "the file ends too early");
+    std::memcpy(to, source.left.data(), count);
+    source.left.remove_prefix(count);
+}
+
+[[noreturn]] void keep_png_error(png_structp png, png_const_charp why) {
+    auto& source = *static_cast<PngSource*>(png_get_error_ptr(png));
+    std::strncpy(source.why.data(), why, source.why.size() - 1);
+    png_longjmp(png, 1);
+}
+
+void drop_png_warning(png_structp, png_const_charp) {}
+
+/// A grey value of 8-bit samples: colours with the weights of sRGB's primaries, transparent pixels over black.
+std::uint8_t grey_of(const std::uint8_t* samples, int channels) {
+    unsigned value = samples[0];
+    if (channels >= 3) value = (6968U * samples[0] + 23434U * samples[1] + 2366U * samples[2] + (1U << 14)) >> 15;
+    if (channels % 2 == 0) value = (value * samples[channels - 1] + 127) / 255;
+    return static_cast<std::uint8_t>(value);
+}
+
+/// A PNG of any kind, read with libpng as the samples that it holds: these are shares of light for a projector, so
+/// what a file says of its gamma is for screens, and is not applied. (The simple functions of libpng apply it, and take
+/// 16 bits as linear light.) After an error libpng jumps back: nothing in begin() and read() needs a destructor.
+class PngReader {
+public:
+    explicit PngReader(std::string_view bytes)
+        : source_{bytes},
+          png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &source_, keep_png_error, drop_png_warning)),
+          info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {}
+    ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+    PngReader(const PngReader&) = delete;
+    PngReader& operator=(const PngReader&) = delete;
+
+    bool begin() {
+        if (info_ == nullptr) return false;
+        if (setjmp(png_jmpbuf(png_)) != 0) return false;
+        png_set_read_fn(png_, &source_, give_png_bytes);
+        png_set_benign_errors(png_, 1);
+        png_read_info(png_, info_);
+        png_set_expand(png_);  // palettes, fewer bits, transparent colours
+        png_set_scale_16(png_);
+        passes_ = png_set_interlace_handling(png_);
+        png_read_update_info(png_, info_);
+        return true;
+    }
+
+    /// Number of bytes that read() needs beside the image: a row, or all rows of an interlaced file; none where the
+    /// samples are the pixels.
+    [[nodiscard]] std::size_t spare_bytes(const PngSize& size) const {
+        if (channels() == 1) return 0;
+        return png_get_rowbytes(png_, info_) * static_cast<std::size_t>(passes_ > 1 ? size.height_px : 1);
+    }
+
+    bool read(const PngSize& size, std::uint8_t* pixels, std::uint8_t* spare) {
+        if (setjmp(png_jmpbuf(png_)) != 0) return false;
+        for (int pass = 0; pass < passes_; ++pass) {
+            for (std::size_t row = 0; row < static_cast<std::size_t>(size.height_px); ++row)
+                read_row(row, static_cast<std::size_t>(size.width_px), pixels, spare);
+        }
+        return true;
+    }
+
+    [[nodiscard]] std::string why() const { return source_.why[0] != 0 ? source_.why.data() : "no memory is left"; }
+
+private:
+    [[nodiscard]] int channels() const { return png_get_channels(png_, info_); }
+
+    void read_row(std::size_t row, std::size_t width, std::uint8_t* pixels, std::uint8_t* spare) {
+        std::uint8_t* out = pixels + row * width;
+        const int n = channels();
+        if (n == 1) return png_read_row(png_, out, nullptr);
+        std::uint8_t* samples = passes_ > 1 ? spare + row * png_get_rowbytes(png_, info_) : spare;
+        png_read_row(png_, samples, nullptr);
+        for (std::size_t c = 0; c < width; ++c) out[c] = grey_of(samples + c * static_cast<std::size_t>(n), n);
+    }
+
+    PngSource source_;
+    png_structp png_;
+    png_infop info_;
+    int passes_ = 1;
+};
+
 }  // namespace
 
 std::string encode_png(const slice::Image& image) {
@@ -175,7 +270,7 @@ std::string encode_png(const slice::RunImage& image) {
     std::string head;
     put_u32(head, static_cast<std::uint32_t>(image.width_px()));
     put_u32(head, static_cast<std::uint32_t>(image.height_px()));
-    head += std::string_view("\x08\0\0\0\0", 5);  // 8 bits, grey, deflate, adaptive filters, not interlaced
+    head += plain_grey;
     std::string png(reinterpret_cast<const char*>(signature.data()), signature.size());
     put_chunk(png, "IHDR", head);
     put_chunk(png, "IDAT", RowPacker(image).pack());
@@ -199,19 +294,13 @@ Result<PngSize> size_in_header(std::string_view head, std::string_view where) {
 Status decode(std::string_view png, const PngSize& size, std::string_view where, slice::Image& image) {
     const std::size_t count = static_cast<std::size_t>(size.width_px) * static_cast<std::size_t>(size.height_px);
     if (decode_own(png, size, image)) return {};
-    png_image reader{};
-    reader.version = PNG_IMAGE_VERSION;
-    if (png_image_begin_read_from_memory(&reader, png.data(), png.size()) == 0)
-        return input_error("{}: {}", where, std::string(reader.message));
-    reader.format = PNG_FORMAT_GRAY;
+    PngReader reader(png);
+    if (!reader.begin()) return input_error("{}: {}", where, reader.why());
     image.width_px = size.width_px;
     image.height_px = size.height_px;
     image.pixels.resize(count);
-    const png_color black{0, 0, 0};
-    const int done = png_image_finish_read(&reader, &black, image.pixels.data(), 0, nullptr);
-    const std::string message = reader.message;
-    png_image_free(&reader);
-    if (done == 0) return input_error("{}: {}", where, message);
+    std::vector<std::uint8_t> spare(reader.spare_bytes(size));
+    if (!reader.read(size, image.pixels.data(), spare.data())) return input_error("{}: {}", where, reader.why());
     return {};
 }
 
@@ -226,7 +315,7 @@ Status check_size(const PngSize& size, const PngSize& expected, std::string_view
 
 Result<PngSize> png_size(std::string_view head, std::string_view where) {
     const auto size = size_in_header(head, where);
-    if (size && head.substr(24, 5) != std::string_view("\x08\0\0\0\0", 5))
+    if (size && head.substr(24, 5) != plain_grey)
         return input_error("{}: an 8-bit grey PNG without interlacing is needed", where);
     return size;
 }

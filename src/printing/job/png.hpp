@@ -33,7 +33,8 @@ inline constexpr std::size_t png_head_bytes = 29;
 [[nodiscard]] Status decode_png(std::string_view png, const PngSize& expected, std::string_view where,
                                 slice::Image& image);
 
-/// The same for PNG images of any kind (colours become grey, transparent pixels dark); at most 2^28 pixels.
+/// The same for PNG images of any kind; at most 2^28 pixels. The samples are taken as they are, whatever the file says
+/// of its gamma: 16 bits are rounded to 8, colours become grey, transparent pixels dark in proportion.
 [[nodiscard]] Result<PngSize> any_png_size(std::string_view png, std::string_view where);
 [[nodiscard]] Result<slice::Image> decode_any_png(std::string_view png, const PngSize& expected,
                                                   std::string_view where);
