@@ -51,7 +51,12 @@ Status make_plan(const PlanOptions& options) {
             "the job was sliced for another {} of the projector: before it is printed on {}, slice it again for that",
             join_names(otherwise), job->printer.name));
     if (options.printer.empty()) {  // the images are for the job's own projector
-        const Result<std::vector<std::string>> overcure = overcure_warnings(job->archive, *plan, job->printer);
+        auto progress = terminal_progress(options.output);
+        on_signal(OnSignal::leave);  // as before: nothing is written yet
+        const Result<std::vector<std::string>> overcure =
+            overcure_warnings(job->archive, *plan, job->printer, *progress);
+        progress.reset();
+        on_signal(OnSignal::leave);
         if (!overcure) return tl::unexpected(overcure.error());
         plan->warnings.insert(plan->warnings.end(), overcure->begin(), overcure->end());
     }

@@ -107,10 +107,14 @@ Status draw_picture(const SliceOptions& options) {
 }
 
 /// Adds warnings that depend on the finished images.
-Status add_overcure(const std::string& file, const machine::Printer& printer, plan::Plan& plan) {
+Status add_overcure(const std::string& file, const machine::Printer& printer, plan::Plan& plan, Progress& progress) {
     const Result<job::Archive> archive = job::Archive::open(file);
     if (!archive) return tl::unexpected(archive.error());
-    const Result<std::vector<std::string>> warnings = overcure_warnings(*archive, plan, printer);
+    const Result<std::vector<std::string>> warnings = overcure_warnings(*archive, plan, printer, progress);
+    if (!warnings && warnings.error().cause == Cause::cancelled)
+        return tl::unexpected(
+            Error{Cause::cancelled,
+                  fmt::format("cancelled: {} is whole, but overcure was not looked for; \"pliant plan\" does", file)});
     if (!warnings) return tl::unexpected(warnings.error());
     plan.warnings.insert(plan.warnings.end(), warnings->begin(), warnings->end());
     return {};
@@ -158,8 +162,10 @@ Status slice(SliceOptions& options) {
     on_signal(OnSignal::ask_twice);
     auto made = prepare::slice_job(order, *printer, std::move(*drawing), options.job, *progress);
     if (!made) return tl::unexpected(made.error());
+    on_signal(OnSignal::ask);  // the job is there
     Status status;
-    if (!options.output.quiet || options.output.json) status = add_overcure(options.job, printer->printer, made->plan);
+    if (!options.output.quiet || options.output.json)
+        status = add_overcure(options.job, printer->printer, made->plan, *progress);
     if (!status) return status;
     if (!options.picture.empty()) status = draw_picture(options);
     progress.reset();

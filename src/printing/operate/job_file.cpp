@@ -38,10 +38,16 @@ Result<std::optional<job::Image>> mask_of(const job::Archive& archive, const mac
 }
 
 Result<job::Image> image_of(const job::Archive& archive, int layer, int material) {
+    job::Image found;
+    if (Status status = image_of(archive, layer, material, found); !status) return tl::unexpected(status.error());
+    return found;
+}
+
+Status image_of(const job::Archive& archive, int layer, int material, job::Image& into) {
     const auto& layers = archive.manifest().layers;
     if (layer >= 0 && layer < static_cast<int>(layers.size())) {
         for (const job::LayerImage& image : layers[static_cast<std::size_t>(layer)].images) {
-            if (image.material == material) return archive.image(image.file);
+            if (image.material == material) return archive.image(image.file, into);
         }
     }
     return input_error("layer {} has no image of material {}", layer, material);

@@ -27,5 +27,7 @@ struct OpenJob {
 
 /// The image of a layer and a material (indices into the manifest).
 [[nodiscard]] Result<job::Image> image_of(const job::Archive& archive, int layer, int material);
+/// The same into an image that is there, whose memory is used again: for many layers.
+[[nodiscard]] Status image_of(const job::Archive& archive, int layer, int material, job::Image& into);
 
 }  // namespace pliant::operate

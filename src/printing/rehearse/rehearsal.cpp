@@ -11,7 +11,10 @@ public:
     explicit Images(std::shared_ptr<job::Archive> archive) : archive_(std::move(archive)) {}
     [[nodiscard]] Result<job::Image> show(int layer, int material) {
         Result<job::Image> image = operate::image_of(*archive_, layer, material);
-        if (image) shown_[{layer, material}] = twin::runs_of(*image);
+        if (!image) return image;
+        twin::Runs runs = twin::runs_of(*image);
+        runs.shrink_to_fit();  // they are kept
+        shown_[{layer, material}] = std::move(runs);
         return image;
     }
     [[nodiscard]] Result<twin::Runs> runs(int layer, int material) const {

@@ -18,7 +18,7 @@ double allowed_overcure_um(const machine::Resin& resin) {
     return resin.cure_depth_um + resin.bleed_compensation_um;
 }
 
-Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
+Cure::Cure(const machine::Printer& printer, Keep keep) : printer_(&printer), keep_(keep) {
     for (const machine::Vat& vat : printer.vats) {
         left_ml_.push_back(vat.fill_ml);
         const machine::Resin* resin = printer.find_resin(vat.resin);
@@ -31,7 +31,7 @@ Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
 
 void Cure::clear() {
     const std::vector<double> left_ml = left_ml_;
-    *this = Cure(*printer_);
+    *this = Cure(*printer_, keep_);
     left_ml_ = left_ml;
 }
 
@@ -112,8 +112,25 @@ double Cure::overcure_um(const Column& column) const {
     return std::min<double>(curves_[static_cast<std::size_t>(column.vat)].depth_um(column.dose_J_m2), column.free_um);
 }
 
-/// Adds light to the ceiling of a column.
-void Cure::add_dose(Column& column, double dose_J_m2) {
+/// In steps, so that a part that leans does not move its columns with every layer.
+void Cure::Strip::reach(int from, int to) {
+    constexpr int step = 64;
+    const int end = begin + static_cast<int>(columns.size());
+    if (columns.empty()) {
+        begin = from / step * step;
+        columns.resize(static_cast<std::size_t>((to + step - 1) / step * step - begin));
+    } else if (from < begin || to > end) {
+        const int first = std::min(from / step * step, begin);
+        const int last = std::max((to + step - 1) / step * step, end);
+        std::vector<Column> wider(static_cast<std::size_t>(last - first));
+        std::copy(columns.begin(), columns.end(), wider.begin() + (begin - first));
+        columns = std::move(wider);
+        begin = first;
+    }
+}
+
+/// Adds light to the ceiling of a column, that of pixel `at` of a row.
+void Cure::add_dose(Column& column, int row, int at, double dose_J_m2) {
     const auto vat = static_cast<std::size_t>(column.vat);
     const double before = overcure_um(column);
     column.dose_J_m2 += static_cast<float>(dose_J_m2);
@@ -123,25 +140,27 @@ void Cure::add_dose(Column& column, double dose_J_m2) {
     if (after > allowed) overcure_beyond_mm3_[vat] += (after - std::max(before, allowed)) / 1000 * pixel_mm2();
     if (after <= deepest_overcure_um_) return;
     deepest_overcure_um_ = after;
-    const auto at = static_cast<int>(&column - columns_.data());
-    const int width = printer_->projector.width_px;
-    deepest_ = {at / width, at % width, column.bottom_um};
+    deepest_ = {row, at, column.bottom_um};
 }
 
 /// Passes light through the new layer and all solid above it, up to the ceiling of the column.
 void Cure::shine_through(const Runs& light, int vat, double dose_J_m2) {
-    const machine::Projector& projector = printer_->projector;
-    const auto width = static_cast<std::size_t>(projector.width_px);
-    columns_.resize(width * static_cast<std::size_t>(projector.height_px));
+    strips_.resize(static_cast<std::size_t>(printer_->projector.height_px));
     const int top_um = open_->top_um;
     const int bottom_um = top_um - open_->thickness_um;
     const double penetration_um = curves_[static_cast<std::size_t>(vat)].penetration_um;
     const double reach_um = 8 * penetration_um;
     int known_way_um = -1;
     double known_dose = 0;
-    for (const Run& run : light) {
-        Column* row = columns_.data() + static_cast<std::size_t>(run.row) * width;
-        for (Column* c = row + run.begin; c != row + run.end; ++c) {
+    for (std::size_t i = 0, row_end = 0; i < light.size(); ++i) {
+        const Run& run = light[i];
+        Strip& strip = strips_[static_cast<std::size_t>(run.row)];
+        if (i == row_end) {
+            while (row_end < light.size() && light[row_end].row == run.row) ++row_end;
+            strip.reach(run.begin, light[row_end - 1].end);
+        }
+        Column* c = strip.columns.data() + (run.begin - strip.begin);
+        for (int at = run.begin; at < run.end; ++at, ++c) {
             if (c->top_um < bottom_um)  // no solid directly above: a new ceiling
                 *c = {bottom_um, top_um, bottom_um - c->top_um, 0, static_cast<std::int16_t>(vat)};
             c->top_um = top_um;
@@ -151,32 +170,36 @@ void Cure::shine_through(const Runs& light, int vat, double dose_J_m2) {
                 known_way_um = way_um;
                 known_dose = dose_J_m2 * std::exp(-way_um / penetration_um);
             }
-            add_dose(*c, known_dose);
+            add_dose(*c, run.row, at, known_dose);
         }
     }
 }
 
 void Cure::count_double(const OpenLayer& layer) {
+    if (open_lights() < 2) return;
     std::vector<Runs> all;
     for (const std::vector<Lit>& of_vat : layer.lit) {
         for (const Lit& lit : of_vat) all.push_back(lit.light);
     }
-    if (all.size() < 2) return;
     for (const Run& run : sum_of(all, printer_->projector.width_px)) {
         if (run.value > 255) pixels_lit_twice_ += run.end - run.begin;
     }
 }
 
-std::optional<CuredLayer> Cure::open_layer() const {
-    if (!open_) return std::nullopt;
-    CuredLayer layer{open_->top_um, open_->thickness_um, {}};
-    for (std::size_t vat = 0; vat < open_->lit.size(); ++vat) {
-        if (open_->lit[vat].empty()) continue;
+CuredLayer Cure::closed(OpenLayer ended) const {
+    CuredLayer layer{ended.top_um, ended.thickness_um, {}};
+    for (std::size_t vat = 0; vat < ended.lit.size(); ++vat) {
+        if (ended.lit[vat].empty()) continue;
         std::vector<Runs> lights;
-        for (const Lit& lit : open_->lit[vat]) lights.push_back(lit.light);
-        layer.vats.push_back({static_cast<int>(vat), sum_of(lights, printer_->projector.width_px), open_->lit[vat]});
+        for (const Lit& lit : ended.lit[vat]) lights.push_back(lit.light);
+        Runs sum = sum_of(lights, printer_->projector.width_px);
+        layer.vats.push_back({static_cast<int>(vat), std::move(sum), std::move(ended.lit[vat])});
     }
     return layer;
+}
+
+std::optional<CuredLayer> Cure::open_layer() const {
+    return open_ ? std::optional(closed(*open_)) : std::nullopt;
 }
 
 std::size_t Cure::open_lights() const {
@@ -187,11 +210,10 @@ std::size_t Cure::open_lights() const {
 
 void Cure::finish() {
     give_up_faint();
-    std::optional<CuredLayer> layer = open_layer();
-    if (!layer) return;
+    if (!open_) return;
     count_double(*open_);
-    top_um_ = layer->top_um;
-    layers_.push_back(std::move(*layer));
+    top_um_ = open_->top_um;
+    if (keep_ == Keep::layers) layers_.push_back(closed(std::move(*open_)));
     open_.reset();
 }
 

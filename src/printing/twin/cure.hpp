@@ -51,9 +51,12 @@ struct CuredLayer {
 /// print can place an underside, plus what bleed compensation removed from the images there.
 [[nodiscard]] double allowed_overcure_um(const machine::Resin& resin);
 
+/// Whether the block is kept, which takes memory for all runs of all layers, or only what is counted.
+enum class Keep { layers, counts };
+
 class Cure {
 public:
-    explicit Cure(const machine::Printer& printer);
+    explicit Cure(const machine::Printer& printer, Keep keep = Keep::layers);
 
     /// One exposure with a vat and the platform at `z_um`; light through an image of the projector's size. The same
     /// image again on the same layer continues the previous exposure: their doses add up.
@@ -69,6 +72,7 @@ public:
     void take_ml(int vat, double ml) { left_ml_[static_cast<std::size_t>(vat)] -= ml; }
     void set_level_ml(int vat, double ml) { left_ml_[static_cast<std::size_t>(vat)] = ml; }
 
+    /// Empty with Keep::counts.
     [[nodiscard]] const std::vector<CuredLayer>& layers() const { return layers_; }
     /// The layer after these as far as it has cured, without closing it; nullopt: none has begun.
     [[nodiscard]] std::optional<CuredLayer> open_layer() const;
@@ -114,25 +118,35 @@ private:
         float dose_J_m2 = 0;         ///< accumulated at `bottom_um`
         std::int16_t vat = 0;        ///< that last exposed the ceiling
     };
+    /// Columns of one row, from that of pixel `begin` on: those that light has reached, and some beside them.
+    struct Strip {
+        int begin = 0;
+        std::vector<Column> columns;
+
+        /// Makes it hold the pixels [from, to).
+        void reach(int from, int to);
+    };
     [[nodiscard]] std::string why_not(int vat, double seconds, int z_um, double area_mm2) const;
     [[nodiscard]] Lit* lit_before(const Runs& light, int vat, int z_um);
     void fault(std::string text);
     void give_up_faint();
     void open(int z_um);
     void shine_through(const Runs& light, int vat, double dose_J_m2);
-    void add_dose(Column& column, double dose_J_m2);
+    void add_dose(Column& column, int row, int at, double dose_J_m2);
+    [[nodiscard]] CuredLayer closed(OpenLayer ended) const;
     [[nodiscard]] double overcure_um(const Column& column) const;
     void count_double(const OpenLayer& layer);
     [[nodiscard]] double pixel_mm2() const;
 
     const machine::Printer* printer_;
+    Keep keep_;
     std::vector<WorkingCurve> curves_;  ///< by vat
     std::vector<double> allowed_um_;    ///< by vat: allowed overcure
     std::optional<OpenLayer> open_;
     std::optional<Faint> faint_;
     int top_um_ = 0;  ///< of the part
     std::vector<CuredLayer> layers_;
-    std::vector<Column> columns_;  ///< (height, width); empty until the first exposure
+    std::vector<Strip> strips_;  ///< by row; empty until the first exposure
     std::vector<double> left_ml_;
     std::vector<double> overcure_mm3_, overcure_beyond_mm3_;
     double deepest_overcure_um_ = 0;

@@ -8,11 +8,13 @@
 namespace pliant::twin {
 
 Result<Cure> planned_cure(const machine::Printer& printer, const job::Manifest& job, const RunSource& images,
-                          const Screen& screen) {
-    Cure cure(printer);
+                          const Screen& screen, Progress& progress) {
+    Cure cure(printer, Keep::counts);
     for (std::size_t vat = 0; vat < printer.vats.size(); ++vat)
         cure.set_level_ml(static_cast<int>(vat), std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < job.layers.size(); ++k) {
+        if (progress.cancelled()) return cancelled();
+        progress.advance("overcure", static_cast<double>(k) / static_cast<double>(job.layers.size()));
         const job::Layer& layer = job.layers[k];
         for (std::size_t i = 0; i < layer.images.size(); ++i) {
             const int material = layer.images[i].material;

@@ -40,6 +40,8 @@ Result<Runs> table_image(int layer, int) {
     return layer < 10 ? Runs{{0, 0, 1, 255}} : Runs{{0, 0, 4, 255}, {1, 0, 4, 255}};
 }
 
+Progress quiet;
+
 double deepest_um(double penetration_um) {
     return cure_depth_um - layer_um - penetration_um * std::log(1 - std::exp(-layer_um / penetration_um));
 }
@@ -50,8 +52,8 @@ TEST_CASE("a job gets warnings of its overcure below undersides, however little 
     for (const double penetration_um : {60.0, 100.0}) {
         const machine::Printer printer = printer_with(penetration_um);
         const Screen screen(printer.projector, std::nullopt);
-        const Cure cure = planned_cure(printer, table(), table_image, screen).value();
-        CHECK(cure.layers().size() == 40);
+        const Cure cure = planned_cure(printer, table(), table_image, screen, quiet).value();
+        CHECK(cure.layers().empty());
         CHECK(cure.deepest_overcure_um() == near(deepest_um(penetration_um), {.relative = 1e-3}));
         CHECK(cure.deepest_overcure().z_um == 500);
         const auto warnings = overcure_warnings(cure, printer);
@@ -69,9 +71,32 @@ TEST_CASE("an image's exposure in the manifest is used, and a missing image is a
     const Screen screen(printer.projector, std::nullopt);
     job::Manifest job = table();
     job.layers[10].images[0].exposure_s = 20;
-    const Cure cure = planned_cure(printer, job, table_image, screen).value();
+    const Cure cure = planned_cure(printer, job, table_image, screen, quiet).value();
     CHECK(cure.deepest_overcure_um() > cure_depth_um);
     CHECK(overcure_warnings(cure, printer).size() == 1);
     const RunSource none = [](int, int) -> Result<Runs> { return input_error("gone"); };
-    CHECK_FALSE(planned_cure(printer, job, none, screen));
+    CHECK_FALSE(planned_cure(printer, job, none, screen, quiet));
+}
+
+TEST_CASE("the look at a job tells how far it is, and can be cancelled") {
+    class After final : public Progress {
+    public:
+        explicit After(std::size_t layers) : layers_(layers) {}
+        void advance(std::string_view stage, double fraction) override {
+            CHECK(stage == "overcure");
+            CHECK(fraction == near(static_cast<double>(told++) / 40, {.absolute = 1e-12}));
+        }
+        [[nodiscard]] bool cancelled() const override { return told == layers_; }
+        std::size_t told = 0;
+
+    private:
+        std::size_t layers_;
+    };
+    const machine::Printer printer = printer_with(60);
+    const Screen screen(printer.projector, std::nullopt);
+    After whole(100), seven(7);
+    CHECK(planned_cure(printer, table(), table_image, screen, whole));
+    CHECK(whole.told == 40);
+    CHECK(planned_cure(printer, table(), table_image, screen, seven).error().cause == Cause::cancelled);
+    CHECK(seven.told == 7);
 }
