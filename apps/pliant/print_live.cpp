@@ -50,6 +50,8 @@ public:
     Keys(const Keys&) = delete;
     Keys& operator=(const Keys&) = delete;
 
+    [[nodiscard]] bool active() const { return active_; }
+
     /// Waits for a key up to the timeout; 0: none was pressed.
     [[nodiscard]] char next(int timeout_ms) const {
         pollfd wait{active_ ? STDIN_FILENO : -1, POLLIN, 0};
@@ -97,7 +99,9 @@ private:
 /// Display for a person: a rewritten line on a terminal, otherwise the events.
 class Display {
 public:
-    explicit Display(const Output& output) : quiet_(output.quiet), line_(!output.quiet && isatty(STDERR_FILENO) == 1) {}
+    /// `goes_on`: whether a pause can be ended without another command.
+    Display(const Output& output, bool goes_on)
+        : quiet_(output.quiet), line_(!output.quiet && isatty(STDERR_FILENO) == 1), goes_on_(goes_on) {}
 
     void show(host::Control& control) {
         for (const host::Event& event : control.events_since(seen_)) {
@@ -107,6 +111,9 @@ public:
             if (!tell || (quiet_ && event.kind != "error")) continue;
             clear();
             fmt::print(stderr, "{} {}\n", event.kind, event.text);
+            if (event.kind == "prompt" && !goes_on_)
+                fmt::print(stderr,
+                           "without a terminal no key resumes: stop this program (SIGTERM), do that, --resume\n");
         }
         if (line_) progress(control.snapshot());
         std::fflush(stderr);
@@ -128,6 +135,7 @@ private:
 
     bool quiet_;
     bool line_;
+    bool goes_on_;
     bool shown_ = false;
     long seen_ = 0;
 };
@@ -146,9 +154,9 @@ void press(host::Control& control, char key) {
 }
 
 /// Runs until the print has ended. Ctrl-C and SIGTERM suspend it; a later Ctrl-C is an emergency stop.
-void attend(host::Control& control, const Output& output) {
+void attend(host::Control& control, const LiveOptions& options) {
     const Keys keys;
-    Display display(output);
+    Display display(options.output, keys.active() || options.port.empty());
     bool suspended = false, stopped = false;
     do {
         press(control, keys.next(100));
@@ -171,12 +179,13 @@ Result<Ended> print_to_end(host::Control& control, const LiveOptions& options, o
     control.serve_until_idle();
     host::StartOptions start;
     start.resume = options.resume;
+    start.has_refilled = options.resume;  // confirmed with the vats
     start.assume.lit_s = options.assume_lit_s;
     start.assume.vats_untouched = options.assume_vats_untouched;
     if (Status status = control.start(start); !status) return tl::unexpected(status.error());
     on_signal(OnSignal::ask_twice);
     std::thread worker([&] { control.serve(); });
-    attend(control, options.output);
+    attend(control, options);
     Ended ended{exit_failed, control.snapshot()};
     control.quit();
     worker.join();
@@ -322,6 +331,10 @@ Result<int> print_live(const LiveOptions& options) {
     if (!options.journal.empty()) ready->job.journal = options.journal;
     show_vats(ready->plan, ready->warnings, options.output);
     if (!options.port.empty()) {
+        if (options.resume && !options.output.quiet) {
+            for (const std::string& text : operate::asked_before(*ready))
+                fmt::print(stderr, "before it goes on: {}\n", text);
+        }
         if (Status asked = options.yes ? Status{} : ask_for_vats(options.output); !asked)
             return tl::unexpected(asked.error());
         return print_on_port(options, *ready);

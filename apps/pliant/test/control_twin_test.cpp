@@ -451,6 +451,32 @@ TEST_CASE("after a print was resumed, a layer that had begun gets no changes, an
     CHECK(b.twin->cured().layers()[4].vats[1].lit[0].seconds == near(3.5, {.relative = 0.01}));
 }
 
+TEST_CASE(
+    "a refill that was asked for before the print was suspended is asked for again unless it is known to be done") {
+    for (const bool has_refilled : {false, true}) {
+        CAPTURE(has_refilled);
+        ControlBench b;
+        b.refills = {{3, 1, "refill the vat of slot 1 with x"}};
+        b.new_host();
+        bool suspended = false;
+        b.life->at_look = [&] {
+            if (b.snapshot().state == State::paused && !std::exchange(suspended, true)) CHECK(b.control->suspend());
+        };
+        b.start();
+        REQUIRE(b.snapshot().can_resume);
+        b.new_host();
+        int prompts = 0;
+        b.life->at_look = [&] {
+            if (b.snapshot().state == State::paused && b.control->resume()) ++prompts;
+        };
+        b.start({true, {}, has_refilled});
+        INFO(b.last_error());
+        CHECK(b.snapshot().finished);
+        CHECK((prompts == 0) == has_refilled);
+        b.must_be_whole();
+    }
+}
+
 TEST_CASE("a start that is refused because a print waits does not lose what it had come to") {
     ControlBench b;
     Operator person(b, lit_on_layer(2), [&] { CHECK(b.control->suspend()); });

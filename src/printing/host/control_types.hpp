@@ -112,6 +112,8 @@ struct Assume {
 struct StartOptions {
     bool resume = false;  ///< continue the print that the journal shows as interrupted
     Assume assume;
+    /// With `resume`: a person has done what the print asked for before it was interrupted, such as to fill a vat.
+    bool has_refilled = false;
 };
 
 enum class PauseWhen {

@@ -62,9 +62,10 @@ public:
         if (r.kind == "skip") return skip(r);
         if (r.kind == "hook") return hook(r);
         if (r.kind == "stop") return stop(r);
+        if (r.kind == "pause") return pause(r);
         if (r.kind == "end") facts_.ended = true;
         if (r.kind == "cancel") facts_.cancelled = true;
-        constexpr std::array<std::string_view, 7> others{"end", "cancel", "pause", "resume", "door", "suspend", "note"};
+        constexpr std::array<std::string_view, 6> others{"end", "cancel", "resume", "door", "suspend", "note"};
         if (std::ranges::find(others, r.kind) != others.end()) return {};
         return input_error(
             "journal record {}: no kind \"{}\" is known; it is of another version of Pliant, or no journal", r.number,
@@ -181,6 +182,11 @@ private:
         fact.open_light = r.number;
         fact.open_since_s = *at;
         facts_.last_light = index;
+        facts_.asked.clear();
+        return {};
+    }
+    Status pause(const JournalRecord& r) {
+        if (const std::string* asked = r.find("asked")) facts_.asked.push_back(*asked);
         return {};
     }
     Status dark(const JournalRecord& r) {

@@ -73,6 +73,7 @@ struct JournalFacts {
     std::map<long, std::vector<std::string>> programs;  ///< commands of inserted programs, by record
     std::optional<GoFact> go;
     std::optional<HookFact> hook;
+    std::vector<std::string> asked;  ///< what pauses since the last exposure began have asked a person to do
     std::vector<ChangeFact> changes;
     std::vector<int> skipped_layers;
     std::vector<long> skip_records;  ///< parallel to those that the journal holds

@@ -171,6 +171,24 @@ TEST_CASE("the facts of a journal: parts of an exposure add up, an open exposure
     }
 }
 
+TEST_CASE("what a person was asked to do is known until the next exposure begins") {
+    auto records = parse_journal(three_records(), "x").value().records;
+    const auto asked = [&](JournalRecord record) {
+        record.number = records.back().number + 1;
+        records.push_back(std::move(record));
+        return facts_of(records).value().asked;
+    };
+    using Texts = std::vector<std::string>;
+    const std::string refill = "refill the vat of slot 1 with soft", door = "the door is open: close it, then resume";
+    CHECK(asked({0, "pause", {}}).empty());
+    CHECK(asked({0, "pause", {{"asked", refill}}}) == Texts{refill});
+    CHECK(asked({0, "pause", {{"asked", door}}}) == Texts{refill, door});
+    CHECK(asked({0, "resume", {}}) == Texts{refill, door});
+    CHECK(asked({0, "suspend", {}}) == Texts{refill, door});
+    CHECK(asked({0, "light", {{"step", "9"}, {"layer", "1"}, {"material", "0"}, {"planned", "2"}, {"at", "99"}}})
+              .empty());
+}
+
 TEST_CASE("records of another format, of an unknown kind or with nonsense are refused, and named") {
     const std::string begin = write_record(1, "begin", {{"job", "x"}, {"digest", ""}, {"printer", "x"}});
     const std::string light =

@@ -53,6 +53,7 @@ PrintRun::PrintRun(const RunSetup& run, JournalFacts facts)
     const std::size_t next = next_light(facts_, run_.script);
     reach(next);
     recall_layer(next);
+    recall_refill(next_layer(next));
     run_.machine.link().set_watch([this] {
         show_progress();
         return run_.desk.watch();
@@ -73,6 +74,9 @@ Result<Ending> PrintRun::print() {
 Result<Ending> PrintRun::resume(const Recovery& recovery) {
     run_.desk.state(State::printing, "resuming: homing, fetching the vat");
     if (Status status = projector_.black(); !status) return tl::unexpected(status.error());
+    if (has_refilled_) {
+        if (Status status = note("resume", {}); !status) return tl::unexpected(status.error());
+    }
     const auto program = run_.setup.programs.resume(recovery);
     if (!program) return tl::unexpected(program.error());
     const Status there_again = run_.machine.run(*program, [this] { return on_the_way(); });
@@ -127,6 +131,15 @@ void PrintRun::recall_layer(std::size_t next) {
         s.layer = last.layer;
         s.material = last.material;
     });
+}
+
+/// What was asked for before the next exposure, which is of this layer, has been done since.
+void PrintRun::recall_refill(int layer) {
+    for (const Refill& refill : run_.job.refills) {
+        if (refill.layer != layer || std::ranges::find(facts_.asked, refill.text) == facts_.asked.end()) continue;
+        refilled_layer_ = layer;
+        has_refilled_ = true;
+    }
 }
 
 /// The machine has done everything before step `step`.

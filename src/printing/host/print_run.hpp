@@ -79,6 +79,7 @@ private:
     void show_progress();
     void reach(std::size_t step);
     void recall_layer(std::size_t next);
+    void recall_refill(int layer);
 
     RunSetup run_;
     JournalFacts facts_;
@@ -95,6 +96,7 @@ private:
     bool owes_hook_ = false;  ///< that of the last layer before this print was resumed
     bool told_of_end_ = false, told_of_pause_ = false;  ///< when it will be, while the print resumes
     int refilled_layer_ = -1;                           ///< last layer before which a refill was requested
+    bool has_refilled_ = false;                         ///< since that request, while the print was interrupted
     long last_record_ = 0;
     bool without_guard_ = false;  ///< it has ended, and that was said
     bool journal_failed_ = false;

@@ -329,6 +329,7 @@ Result<Ending> Control::Private::go_on(const StartOptions& options, bool abandon
     if (Status status = connect_machine(base, &journal); !status) return tl::unexpected(status.error());
     if (Status status = preflight(); !status) return tl::unexpected(status.error());
     connects = false;
+    if (!options.has_refilled) facts->asked.clear();
     PrintRun run({setup, *job, script, times, *machine, &journal, desk}, std::move(*facts));
     Result<Ending> ending = abandon ? run.abandon(*recovery) : run.resume(*recovery);
     if (!ending) run.make_safe(ending.error());

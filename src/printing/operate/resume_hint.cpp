@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "base/core/file_handle.hpp"
 #include "base/core/files.hpp"
@@ -34,6 +35,23 @@ bool is_in_use(const std::filesystem::path& journal) {
     return file.is_open() && ::flock(file.number(), LOCK_SH | LOCK_NB) != 0;
 }
 
+struct Interrupted {
+    host::JournalFacts facts;
+    long last_record = 0;
+};
+
+std::optional<Interrupted> interrupted_print(const std::filesystem::path& journal, const std::string& digest,
+                                             const std::string& printer) {
+    const Result<std::string> text = read_file(journal);
+    if (!text || is_in_use(journal)) return {};
+    const auto parsed = host::parse_journal(*text, journal.string());
+    if (!parsed || parsed->records.empty()) return {};
+    auto facts = host::facts_of(parsed->records);
+    if (!facts || !host::is_interrupted(*facts)) return {};
+    if (facts->digest != digest || facts->printer != printer) return {};
+    return Interrupted{std::move(*facts), parsed->records.back().number};
+}
+
 }  // namespace
 
 std::string resume_command(const PrintCall& call) {
@@ -54,14 +72,20 @@ std::string resume_command(const PrintCall& call) {
 
 std::optional<long> interrupted_at(const std::filesystem::path& journal, const std::string& digest,
                                    const std::string& printer) {
-    const Result<std::string> text = read_file(journal);
-    if (!text || is_in_use(journal)) return {};
-    const auto parsed = host::parse_journal(*text, journal.string());
-    if (!parsed || parsed->records.empty()) return {};
-    const auto facts = host::facts_of(parsed->records);
-    if (!facts || !host::is_interrupted(*facts)) return {};
-    if (facts->digest != digest || facts->printer != printer) return {};
-    return parsed->records.back().number;
+    const auto print = interrupted_print(journal, digest, printer);
+    return print ? std::optional(print->last_record) : std::nullopt;
+}
+
+std::vector<std::string> asked_before(const ReadyJob& ready) {
+    std::vector<std::string> asked;
+    const auto print = interrupted_print(ready.job.journal, ready.job.digest, ready.printer.name);
+    if (!print) return asked;
+    for (const std::string& text : print->facts.asked) {
+        const bool is_refill =
+            std::ranges::find(ready.job.refills, text, &host::Refill::text) != ready.job.refills.end();
+        if (is_refill && std::ranges::find(asked, text) == asked.end()) asked.push_back(text);
+    }
+    return asked;
 }
 
 Status check_resumable(const ReadyJob& ready) {

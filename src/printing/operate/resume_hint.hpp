@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/core/error.hpp"
 #include "printing/operate/port_station.hpp"
@@ -26,6 +27,9 @@ struct PrintCall {
 /// nothing otherwise, and nothing while a host prints with it. Opens no file that is not there.
 [[nodiscard]] std::optional<long> interrupted_at(const std::filesystem::path& journal, const std::string& digest,
                                                  const std::string& printer);
+
+/// What that print has asked a person to do before its next exposure, such as to fill a vat; likewise.
+[[nodiscard]] std::vector<std::string> asked_before(const ReadyJob& ready);
 
 /// Errors: host::check_way_on() of that print; ok if the journal cannot be read.
 [[nodiscard]] Status check_resumable(const ReadyJob& ready);
