@@ -36,7 +36,7 @@ struct GradientOptions {
     bool tets = false;            ///< material properties of each tetrahedron
     /// Names of [parameters] of the robot file that are numbers, not formulas of others. Everything that follows from
     /// one is included: the shape, whose mesh moves along with unchanged topology, positions, constants, targets. Only
-    /// for quasi-static programs without friction.
+    /// for quasi-static programs without friction and objects, in which supports hold every body.
     std::vector<std::string> numbers{};
     /// Number of states kept if steps depend on earlier ones, at least 1. The others are solved again, so that memory
     /// does not grow with the number of steps.

@@ -111,7 +111,8 @@ def gradient(
         tets: also with respect to the material of each tetrahedron.
         numbers: names of [parameters] of the robot file that are numbers, not formulas of others: also with respect to
             these. Everything that follows from one is included: the shape, whose mesh moves along, positions,
-            constants, targets. Only for quasi-static programs without friction.
+            constants, targets. Only for quasi-static programs without friction and objects, in which supports hold every
+            body.
         kept: number of states kept if steps depend on earlier ones; the others are solved again.
         progress: called with (stage, share) some times a second; False cancels.
 

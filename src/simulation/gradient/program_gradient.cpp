@@ -1,8 +1,11 @@
 #include "simulation/gradient/program_gradient.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -40,7 +43,7 @@ public:
             if (Status status = check(stepper_.system(), measure); !status) return tl::unexpected(status.error());
         }
         if (has_history() && !options_.by.numbers.empty())
-            return input_error("numbers of the drawing have no derivative over friction or motion in time");
+            return input_error("numbers of the drawing have no derivative {}", cause_of_history());
         const Status status = has_history() ? all_back() : all_forward();
         if (!status) return tl::unexpected(status.error());
         std::ranges::reverse(result_.instants);
@@ -55,6 +58,17 @@ private:
 
     /// True if a step depends on the one before.
     [[nodiscard]] bool has_history() const { return stepper_.has_inertia() || stepper_.system().has_friction(); }
+
+    /// Its first cause, as the end of a sentence. Precondition: has_history().
+    [[nodiscard]] std::string cause_of_history() const {
+        if (stepper_.options().dynamics) return "over motion in time";
+        if (stepper_.system().has_friction()) return "over friction";
+        // A tether to the step before holds what no support does.
+        const auto& objects = stepper_.model().description().objects;
+        return fmt::format("where {}, since each equilibrium then depends on the one before",
+                           objects.empty() ? std::string("no support holds a body")
+                                           : fmt::format("there is an object (\"{}\")", objects.front().name));
+    }
 
     /// Advances the robot from the end of step k - 1 to that of step k.
     [[nodiscard]] Status forward(RobotState& robot, int k, std::vector<Piece>* pieces) {

@@ -246,5 +246,21 @@ TEST_CASE("a number has no derivative if it changes which nodes are held or load
     Progress silent;
     const auto of = sim::program_gradient(*model, in_time, wanted(), options, silent);
     REQUIRE_FALSE(of);
-    CHECK(holds(of.error().message, "no derivative over friction or motion in time"));
+    CHECK(holds(of.error().message, "no derivative over motion in time"));
+    // Through the tether that holds what no support does.
+    const auto refusal = [&](const std::string& added) {
+        Case of_one(1);
+        of_one.text.insert(of_one.text.find("[program]"), added);
+        of_one.robot = *of_one.read({});
+        const auto with = build_model(of_one.robot, of_one.mesh);
+        REQUIRE_MESSAGE(with, (with ? "" : with.error().message));
+        const auto refused = sim::program_gradient(*with, of_one.robot.program, wanted(), options, silent);
+        REQUIRE_FALSE(refused);
+        return refused.error().message;
+    };
+    CHECK(holds(refusal("[[object]]\nname = \"weight\"\nmass = \"2 g\"\n"
+                        "geometry = { box = [[55, 0, 0], [60, 5, 5]] }\n"
+                        "[[joint]]\nname = \"hook\"\nkind = \"hinge\"\nbetween = [\"weight\", \"world\"]\n"
+                        "point = [55, 2, 2]\naxis = [0, 1, 0]\n"),
+                "no derivative where there is an object (\"weight\")"));
 }
