@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -71,8 +74,40 @@ double share_of_material(const mesh::TriMesh& surface, const sim::Attacher& atta
     return inside > 0 ? static_cast<double>(material) / inside : 0;
 }
 
+/// The point in the middle of each edge, by its ends in ascending order.
+using EdgeMiddles = std::map<std::pair<int, int>, int>;
+
+/// `outwards`: the side that the triangles look to; `middles`: empty for faces that stay flat.
+std::vector<sim::WallFace> wall_faces(const mesh::TriMesh& surface, bool outwards, const EdgeMiddles& middles) {
+    std::vector<sim::WallFace> faces;
+    for (const auto& t : surface.triangles) {
+        const std::array<int, 3> c = outwards ? t : std::array<int, 3>{t[0], t[2], t[1]};
+        const auto middle = [&](std::size_t k) {
+            return middles.empty() ? -1 : middles.at(std::minmax(c[k], c[(k + 1) % 3]));
+        };
+        faces.push_back({c[0], c[1], c[2], middle(0), middle(1), middle(2)});
+    }
+    return faces;
+}
+
+/// Adds the middles to the points of the surface.
+EdgeMiddles add_middles(mesh::TriMesh& surface) {
+    EdgeMiddles middles;
+    for (const auto& t : surface.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [edge, fresh] = middles.try_emplace(std::minmax(t[k], t[(k + 1) % 3]));
+            if (!fresh) continue;
+            edge->second = static_cast<int>(surface.points.size());
+            const Vec3 a = surface.points[static_cast<std::size_t>(edge->first.first)];
+            const Vec3 b = surface.points[static_cast<std::size_t>(edge->first.second)];
+            surface.points.push_back(0.5 * (a + b));
+        }
+    }
+    return middles;
+}
+
 /// A closed surface whose points are attached to the tets that contain them. Only its points move, and pressure acts on
-/// them: its triangles must not be larger than the faces of the tets beside them.
+/// them: its triangles must not be larger than the faces of the tets beside them, and bend as these do.
 sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec,
                        const SurfaceFile& given) {
     Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);
@@ -92,10 +127,13 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
                                   100 * material));
         return {};
     }
-    // Quadratic tets have nodes in the middle of their edges.
-    const double share = draft.description.mesh.order == 2 ? 0.5 : 1;
+    // Quadratic tets have nodes in the middle of their edges, and faces that bend.
+    const bool bends = draft.description.mesh.order == 2;
+    const double share = bends ? 0.5 : 1;
     surface =
         mesh::with_short_edges(std::move(surface), [&](const Vec3& p) { return share * attacher.edge_of_tet(p); });
+    const bool outwards = mesh::signed_volume(surface) > 0;
+    const EdgeMiddles middles = bends ? add_middles(surface) : EdgeMiddles{};
     sim::Wall wall;
     for (const Vec3& p : surface.points) {
         Result<sim::Attachment> attachment = attacher.carried_by_tet(p, wall_reach * draft.box.diagonal());
@@ -106,9 +144,7 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
         }
         wall.points.push_back(std::move(*attachment));
     }
-    const bool outwards = mesh::signed_volume(surface) > 0;
-    for (const auto& t : surface.triangles)
-        wall.faces.push_back({t[0], outwards ? t[1] : t[2], outwards ? t[2] : t[1], -1, -1, -1});
+    wall.faces = wall_faces(surface, outwards, middles);
     return wall;
 }
 
