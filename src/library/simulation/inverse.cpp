@@ -66,6 +66,7 @@ InverseResult inverse(const Model& model, const InverseOptions& options, const W
     progress.rethrow();
     if (found.cancelled && found.waypoints.empty()) library::check(cancelled());
     std::ranges::copy(robot::notes_on_goals(scene.robot, scene.model.mesh()), std::back_inserter(found.notes));
+    std::ranges::copy(robot::notes_on_times(scene.robot), std::back_inserter(found.notes));
     std::vector<SteeredInput> inputs = library::steered_inputs(scene.model, task);
     return InverseResult(std::make_shared<const InverseResult::Data>(
         InverseResult::Data{model.data(), std::move(task), std::move(found), std::move(inputs),

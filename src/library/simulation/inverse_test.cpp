@@ -262,7 +262,9 @@ TEST_CASE("the program of goals with times is written, however late the times ar
     REQUIRE(result.waypoint_count() == 2);
     CHECK(result.waypoint(1).time == 10);
     (void)result.write(folder / "out", {}, [] { return true; });
-    CHECK(run(Model(Robot::load(folder / "out/program.toml"))).converged());
+    const Model led(Robot::load(folder / "out/program.toml"));
+    CHECK(run(led).converged());
+    CHECK_THROWS_WITH_AS((void)inverse(led), doctest::Contains("search with robot.toml itself"), Failure);
 }
 
 TEST_CASE("what could not be written is refused before the search") {

@@ -42,8 +42,8 @@ struct GoalSpec {
     int line = 0;
 };
 
-/// What is wrong with a goal that has a time after the end of the program, without the goal's kind and name; empty if
-/// it has none.
+/// What is wrong with a goal that has a time after the end of the program, without the goal's kind and name and what
+/// to do; empty if it has none.
 [[nodiscard]] std::string late_time(const GoalSpec& goal, double duration);
 
 }  // namespace pliant::robot

@@ -339,6 +339,8 @@ struct Robot {
     std::vector<MarkerSpec> markers;
     std::vector<SensorSpec> sensors;
     std::vector<GoalSpec> goals;
+    /// A file that stands on this one has another course of the program, and gives the goals no times of it.
+    bool times_of_other_program = false;
     Vec3 gravity_m_s2;
     Curve gravity_share = ramp(0, 1);
     double ambient_pressure_Pa = 101325;

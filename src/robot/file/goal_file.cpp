@@ -349,7 +349,7 @@ void check_goal_times(Reader& root, const Robot& robot) {
     if (root.unreadable("program")) return;
     for (const GoalSpec& goal : robot.goals) {
         if (const std::string late = late_time(goal, robot.program.duration); !late.empty())
-            root.problem("goal", fmt::format("\"{}\" {}", goal.name, late));
+            root.problem("goal", fmt::format("\"{}\" {}; give program.duration", goal.name, late));
     }
 }
 

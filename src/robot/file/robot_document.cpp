@@ -150,6 +150,13 @@ fs::path beside(const fs::path& file, const std::string& name) {
 
 }  // namespace
 
+bool set_goal_times(const std::vector<std::string>& assignments) {
+    return std::ranges::any_of(assignments, [](const std::string& assignment) {
+        const auto parts = config::path_parts(trimmed(std::string_view(assignment).substr(0, assignment.find('='))));
+        return parts.size() > 1 && parts.front() == "goal" && parts.back() == "times";
+    });
+}
+
 Status set_all(config::Document& document, const std::vector<std::string>& assignments) {
     std::vector<AddedName> all;
     for (const std::string& assignment : assignments) {
@@ -215,6 +222,11 @@ Result<Changes> read_changes(const config::Document& document, Chain& chain) {
     return changes;
 }
 
+/// Steps and tolerances alone leave a program what it was.
+bool has_course(const config::Value& program) {
+    return entry_of(program, "duration") != nullptr || entry_of(program, "key") != nullptr;
+}
+
 Status apply(config::Document& document, Changes changes) {
     if (Status status = set_all(document, changes.assignments); !status) return status;
     if (!changes.program) return {};
@@ -272,6 +284,8 @@ Result<BasedDocument> on_base(config::Document document) {
         Result<config::Document> base = config::load(changes->base);
         if (!base) return tl::unexpected(base.error());
         based.has_other_program = based.has_other_program || changes->program;
+        based.has_other_course = based.has_other_course || (changes->program && has_course(*changes->program));
+        based.sets_goal_times = based.sets_goal_times || set_goal_times(changes->assignments);
         above.push_back(std::move(*changes));
         document = std::move(*base);
     }

@@ -20,6 +20,8 @@ namespace pliant::robot {
 struct BasedDocument {
     config::Document document;
     bool has_other_program = false;  ///< a file that stands on the robot has a [program] of its own
+    bool has_other_course = false;   ///< and in it another duration, or keys
+    bool sets_goal_times = false;    ///< such a file sets `times` of a goal
 };
 
 /// Of robot = "FILE.toml" that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of
@@ -41,6 +43,9 @@ struct BasedDocument {
 /// cannot be read.
 [[nodiscard]] Result<std::string> digest_of_named_files(std::string_view text, const std::filesystem::path& file,
                                                         const std::vector<std::string>& assignments);
+
+/// True if one of these "KEY=VALUE" is of the `times` of a goal.
+[[nodiscard]] bool set_goal_times(const std::vector<std::string>& assignments);
 
 /// Applies each "KEY=VALUE". Errors: those of config::set(); a material, parameter or shape that the document does not
 /// have and nothing in it uses.

@@ -100,6 +100,7 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     // The times of goals are of the robot's own program. Where a search for goals has written its answer, and in every
     // other file that stands on the robot with a program, they are of none that runs.
     if (!based->has_other_program) check_goal_times(root, robot);
+    robot.times_of_other_program = based->has_other_course && !based->sets_goal_times && !set_goal_times(assignments);
     if (robot.fixed.empty() && !root.unreadable("fixed") && !may_be_free(robot))
         root.problem("",
                      "nothing is fixed; add [[fixed]] with a box that holds one end of the robot, an [[obstacle]] to "

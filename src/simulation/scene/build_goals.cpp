@@ -119,6 +119,15 @@ Status check_columns_of_inputs(const Robot& robot, bool need_goals) {
     return {};
 }
 
+/// For a program that `pliant inverse` wrote, above all: it passes the waypoints at 1 s, 2 s and so on.
+std::string of_other_program(const Robot& robot) {
+    const std::string file = robot.file.filename().string();
+    return fmt::format(
+        "goals have the times of the program in {0}, and the file that stands on it has another program; search with "
+        "{0} itself, or give the goals times of this program, as --set goal.NAME.times=[1,2]",
+        file);
+}
+
 std::vector<sim::Steered> steered_actuators(const Robot& robot) {
     std::vector<sim::Steered> inputs;
     for (std::size_t c = 0; c < robot.cables.size(); ++c) {
@@ -135,6 +144,13 @@ std::vector<sim::Steered> steered_actuators(const Robot& robot) {
 
 }  // namespace
 
+std::vector<std::string> notes_on_times(const Robot& robot) {
+    const auto timed = std::ranges::find_if(robot.goals, [](const GoalSpec& goal) { return !goal.times.empty(); });
+    if (!robot.times_of_other_program || timed == robot.goals.end()) return {};
+    return {
+        fmt::format("the times of goal \"{}\" may mean something else here: {}", timed->name, of_other_program(robot))};
+}
+
 Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model, bool need_goals) {
     if (robot.program.dynamics)
         return input_error("{}: program: time_step: {}; leave it out", robot.file.string(),
@@ -146,7 +162,8 @@ Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model
     for (const GoalSpec& goal : robot.goals) {
         const std::string late = late_time(goal, robot.program.duration);
         if (need_goals && !late.empty())
-            return input_error("{}: goal: \"{}\" {}", robot.file.string(), goal.name, late);
+            return input_error("{}: goal: \"{}\" {}; {}", robot.file.string(), goal.name, late,
+                               robot.times_of_other_program ? of_other_program(robot) : "give program.duration");
     }
     sim::InverseTask task;
     task.inputs = steered_actuators(robot);

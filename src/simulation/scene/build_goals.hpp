@@ -22,6 +22,9 @@ namespace pliant::robot {
 /// length unit.
 [[nodiscard]] std::vector<std::string> notes_on_goals(const Robot& robot, const mesh::TetMesh& mesh);
 
+/// Goals with times of another program than the one that the robot has from a file that stands on its own.
+[[nodiscard]] std::vector<std::string> notes_on_times(const Robot& robot);
+
 /// Solver tolerance for a program whose steps are compared with goals: the error of an equilibrium must be smaller than
 /// the tolerance of a goal.
 [[nodiscard]] double goal_tolerance(const Program& program);

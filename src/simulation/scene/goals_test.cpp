@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "base/core/files.hpp"
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
@@ -296,7 +297,23 @@ TEST_CASE("times of goals are of their own robot file's program, and of no use w
     const auto shorter = testing::build(load_robot(folder.path() / "program.toml"));
     const auto goals = build_goals(shorter.robot, shorter.model);
     REQUIRE_FALSE(goals);
-    CHECK(holds(goals.error().message, "goal: \"reach\" has a time of 10 s, and the program ends at 2 s"));
+    CHECK(
+        holds(goals.error().message,
+              "goal: \"reach\" has a time of 10 s, and the program ends at 2 s; goals have the times of the program in "
+              "bar.toml, and the file that stands on it has another program; search with bar.toml itself"));
+    // Earlier times are searched for, with a note, unless they are set for this program.
+    const auto notes_with = [&](const std::string& program, const std::vector<std::string>& changes) {
+        REQUIRE(write_file(folder.path() / "program.toml", "robot = \"bar.toml\"\n" + program));
+        const auto read = load_robot(folder.path() / "program.toml", changes);
+        REQUIRE_MESSAGE(read, (read ? "" : read.error().message));
+        return notes_on_times(*read);
+    };
+    const std::string longer = "[program]\nduration = \"12 s\"\n";
+    REQUIRE(notes_with(longer, {}).size() == 1);
+    CHECK(holds(notes_with(longer, {})[0], "the times of goal \"reach\" may mean something else here"));
+    CHECK(notes_with(longer, {"goal.reach.times=[1, 2]"}).empty());
+    CHECK(notes_with("set = [\"goal.reach.times=[1, 2]\"]\n" + longer, {}).empty());
+    CHECK(notes_with("[program]\nsteps = 3\n", {}).empty());
     const auto inputs = build_goals(shorter.robot, shorter.model, false);
     REQUIRE(inputs);
     CHECK(inputs->times == std::vector<double>{2});
