@@ -1,11 +1,13 @@
 // A print with --twin and one at a port, on the same virtual printer with the same fault, write the same journal: both
-// use the same engine. Only timing differs: when an exposure began, its duration to the millisecond, and the first line
-// number of a session.
+// use the same engine. Only timing differs: when an exposure began, how late a busy computer ended it, and the first
+// line number of a session.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <thread>
 
@@ -89,7 +91,8 @@ std::string without_times(const std::vector<host::JournalRecord>& records) {
     return text;
 }
 
-/// Duration of each exposure piece, on the machine's clock.
+/// Duration of each exposure piece, on the machine's clock. At a port that clock runs with the computer's, so that what
+/// keeps a process waiting makes a piece longer, by `speed` times as much, but never shorter.
 std::vector<double> lit(const std::vector<host::JournalRecord>& records) {
     std::vector<double> seconds;
     for (const host::JournalRecord& record : records) {
@@ -128,6 +131,8 @@ TEST_CASE("print --twin and a print over the wire write the same journal, with a
         for (std::size_t i = 0; i < cases.size(); ++i)
             workers.emplace_back([&, i] { prints[i].emplace(*benches[i], cases[i].fault); });
     }
+    constexpr double rounding_s = 2e-3;  // journals have milliseconds
+    double least_late_s = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < cases.size(); ++i) {
         CAPTURE(cases[i].printer);
         CAPTURE(cases[i].fault);
@@ -141,8 +146,14 @@ TEST_CASE("print --twin and a print over the wire write the same journal, with a
         CHECK(p.twin_status == (cases[i].fault.empty() || cases[i].fault == "lose-line:60" ? 0 : 1));
         const std::vector<double> seconds = lit(p.twin), over_wire = lit(p.port);
         REQUIRE(seconds.size() == over_wire.size());
-        for (std::size_t k = 0; k < seconds.size(); ++k) CHECK(over_wire[k] - seconds[k] == near(0, {.absolute = 0.5}));
+        for (std::size_t k = 0; k < seconds.size(); ++k) {
+            const double late_s = over_wire[k] - seconds[k];
+            CHECK(late_s > -rounding_s);
+            least_late_s = std::min(least_late_s, late_s);
+        }
     }
+    // An engine that exposes for longer does so each time; a busy computer spares one of all exposures.
+    CHECK(least_late_s < 0.5);
     REQUIRE(lit(prints[0]->twin).size() == 2 * layers);
     CHECK(lit(prints[0]->twin)[0] == near(6, {.relative = 1e-9}));
 }
