@@ -31,6 +31,7 @@ struct ExposureRule {
     bool operator==(const ExposureRule&) const = default;
 };
 
+inline constexpr double shortest_exposure_s = 0.001;  // G-code has milliseconds
 inline constexpr double longest_exposure_s = 3600;
 
 /// Errors: transition layers outside 0 to 10000, spans with layers out of order or exposures not above 0 and at most

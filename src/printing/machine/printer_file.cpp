@@ -9,6 +9,7 @@
 
 #include "base/core/config.hpp"
 #include "base/core/letters.hpp"
+#include "printing/job/exposure.hpp"
 #include "printing/machine/gcode.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/machine/printer_reading.hpp"
@@ -172,6 +173,8 @@ Resin read_resin(const std::string& name, Reader r) {
     Resin resin;
     resin.name = name;
     resin.exposure_s = positive(r, "exposure", Dimension::time, 1);
+    if (resin.exposure_s > 0 && resin.exposure_s < job::shortest_exposure_s)
+        r.problem("exposure", "must be at least a millisecond");
     resin.bottom_exposure_s = r.quantity("bottom_exposure", Dimension::time, resin.exposure_s);
     if (resin.bottom_exposure_s < resin.exposure_s) r.problem("bottom_exposure", "is shorter than exposure");
     resin.bottom_layers = r.has("bottom_layers") ? r.whole("bottom_layers", 0, 10000) : 0;

@@ -70,6 +70,8 @@ TEST_CASE("XY compensation and elephant foot belong to a resin") {
     CHECK(resin.elephant_foot_um == 100);
     CHECK(resin.elephant_foot_layers == resin.bottom_layers);
     CHECK(printer->find_resin("tough")->xy_compensation_um == 0);
+    CHECK(holds(message_with("exposure = \"2.5 s\"", "exposure = \"0.9 ms\""),
+                "resin.semi-flex.exposure: must be at least a millisecond"));
     CHECK(holds(message_with(table, table + "xy_compensation = \"2 cm\"\n"),
                 "resin.semi-flex.xy_compensation: must be -10 mm to 10 mm"));
 }

@@ -13,6 +13,10 @@ double WorkingCurve::depth_um(double dose_J_m2) const {
     return dose_J_m2 > critical_J_m2 ? penetration_um * std::log(dose_J_m2 / critical_J_m2) : 0;
 }
 
+double assumed_penetration_um(const Printer& printer) {
+    return printer.layer_um;
+}
+
 double cure_depth_um(const Printer& printer, const Resin& resin, double exposure_s) {
     return working_curve(printer, resin).depth_um(irradiance_W_m2(printer) * exposure_s);
 }

@@ -16,6 +16,9 @@ struct WorkingCurve {
 /// its critical share to one layer.
 [[nodiscard]] WorkingCurve working_curve(const Printer& printer, const Resin& resin);
 
+/// Assumed of a resin of which the printer file says nothing: its exposure cures two layers, two depths of penetration.
+[[nodiscard]] double assumed_penetration_um(const Printer& printer);
+
 /// How deep an exposure cures by that curve.
 [[nodiscard]] double cure_depth_um(const Printer& printer, const Resin& resin, double exposure_s);
 

@@ -356,11 +356,10 @@ machine::Printer filled_printer(const Plan& plan, const job::Manifest& job, Prin
     for (const VatUse& use : plan.vats) {
         if (printer.find_resin(use.resin) != nullptr) continue;
         const job::Material& m = job.materials[static_cast<std::size_t>(use.materials.front())];
-        // A typical resin: an exposure cures two layers, which is two depths of penetration.
         const int cure_depth_um = 2 * printer.layer_um;
         const double critical_J_m2 = machine::irradiance_W_m2(printer) * m.exposure_s * std::exp(-2);
         printer.resins.push_back({use.resin, m.exposure_s, m.bottom_exposure_s, job::bottom_layers(job, m),
-                                  cure_depth_um, 0.8, cure_depth_um / 2.0, critical_J_m2});
+                                  cure_depth_um, 0.8, machine::assumed_penetration_um(printer), critical_J_m2});
     }
     return printer;
 }

@@ -137,11 +137,14 @@ double own_exposure_s(const JobSettings& settings, const Material& material, int
     return seconds == usual ? 0 : seconds;
 }
 
-/// Thicker layers get longer exposures.
+/// Thicker layers get longer exposures, thinner ones shorter ones.
 Status check_exposure(const JobSettings& settings, const Material& material, int k, int thickness_um) {
     const auto rule = settings.exposures.find(material.parts.empty() ? material.name : material.parts.front().name);
     if (rule == settings.exposures.end()) return {};
     const double seconds = exposure_s(material, rule->second, k, thickness_um);
+    if (seconds < shortest_exposure_s)
+        return input_error("material \"{}\": {}, {} um thick, needs an exposure of less than a millisecond",
+                           material.name, slice::layer_text(k), thickness_um);
     if (seconds <= settings.most_exposure_s) return {};
     const double thickest_um =
         std::floor(thickness_um + rule->second.penetration_um * std::log(settings.most_exposure_s / seconds));

@@ -18,6 +18,17 @@
 namespace pliant::prepare {
 namespace {
 
+/// Whole milliseconds, as in G-code, so that the manifest says what the program does.
+double rounded_s(double seconds) {
+    return std::round(seconds * 1000) / 1000;
+}
+
+int most_bottom_layers(const machine::Printer& printer) {
+    int most = 0;
+    for (const machine::Resin& resin : printer.resins) most = std::max(most, resin.bottom_layers);
+    return most;
+}
+
 /// A material with the printer file's settings for its resin; for an unknown resin, the longest exposures in the file,
 /// and the most bottom layers.
 job::Material with_exposure(const std::string& name, const std::string& resin, const machine::Printer& printer,
@@ -34,8 +45,8 @@ job::Material with_exposure(const std::string& name, const std::string& resin, c
     for (const machine::Resin& other : printer.resins) {
         entry.exposure_s = std::max(entry.exposure_s, other.exposure_s);
         entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, other.bottom_exposure_s);
-        entry.bottom_layers = std::max(entry.bottom_layers.value_or(0), other.bottom_layers);
     }
+    entry.bottom_layers = most_bottom_layers(printer);
     warnings.push_back(
         fmt::format("resin \"{}\" is not in the printer file: exposures of {} s and {} s (bottom layers) are assumed",
                     resin, entry.exposure_s, entry.bottom_exposure_s));
@@ -53,6 +64,8 @@ std::vector<job::Material> with_exposures(Drawing& drawing, const machine::Print
             entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, entry.exposure_s);
             if (own->second.second > 0) entry.bottom_exposure_s = own->second.second;
         }
+        entry.exposure_s = rounded_s(entry.exposure_s);
+        entry.bottom_exposure_s = rounded_s(entry.bottom_exposure_s);
         if (const auto own = drawing.colour_of_material.find(material); own != drawing.colour_of_material.end())
             entry.colour = own->second;
         materials.push_back(std::move(entry));
@@ -79,10 +92,15 @@ std::map<std::string, job::ExposureRule> exposure_rules(const Drawing& drawing, 
                                                         bool many_heights) {
     std::map<std::string, job::ExposureRule> rules;
     for (const auto& [material, name] : drawing.resin_of_material) {
+        job::ExposureRule rule{most_bottom_layers(printer), 0, 0, printer.layer_um, {}};
         const machine::Resin* resin = printer.find_resin(name);
-        if (resin == nullptr) continue;
-        job::ExposureRule rule{resin->bottom_layers, resin->transition_layers, 0, printer.layer_um, {}};
-        if (many_heights) rule.penetration_um = machine::working_curve(printer, *resin).penetration_um;
+        if (resin != nullptr) {
+            rule.bottom_layers = resin->bottom_layers;
+            rule.transition_layers = resin->transition_layers;
+        }
+        if (many_heights)
+            rule.penetration_um = resin != nullptr ? machine::working_curve(printer, *resin).penetration_um
+                                                   : machine::assumed_penetration_um(printer);
         if (rule.transition_layers > 0 || rule.penetration_um > 0) rules[material] = rule;
     }
     return rules;
@@ -169,10 +187,9 @@ Status set_pairs(const Order& order, const Drawing& drawing, slice::Settings& sl
 Result<double> seconds_of(const std::string& option, const std::string& text) {
     const Result<double> seconds = parse_quantity(text, Dimension::time);
     if (!seconds) return input_error("--exposure {}: {}", option, seconds.error().message);
-    constexpr double shortest_s = 0.001;  // G-code has milliseconds
-    if (!(*seconds >= shortest_s && *seconds <= job::longest_exposure_s))
+    if (!(*seconds >= job::shortest_exposure_s && *seconds <= job::longest_exposure_s))
         return input_error("--exposure {}: must be from a millisecond to an hour", option);
-    return *seconds;
+    return rounded_s(*seconds);
 }
 
 /// The printer file's exposure of these layers of a resin; where they differ, the nearest to `seconds`.

@@ -265,6 +265,9 @@ TEST_CASE("--exposure sets all layers of a material, its first layers, or some l
     CHECK(s.materials[1].exposure_s == 4);
     s = settings_of([](Order& o) { o.exposures = {"soft=20 s"}; });
     CHECK(s.materials[0].bottom_exposure_s == 20);
+    s = settings_of([](Order& o) { o.exposures = {"soft=1.6 ms,20.0004 s"}; });
+    CHECK(s.materials[0].exposure_s == 0.002);  // as the program says it
+    CHECK(s.materials[0].bottom_exposure_s == 20);
     s = settings_of([](Order& o) { o.exposures = {"soft=20 s,5 s"}; });
     CHECK(s.materials[0].bottom_exposure_s == 5);
     s = settings_of([](Order& o) { o.exposures = {"firm:2-5=6 s", "firm:7=1 s"}; });
@@ -358,6 +361,15 @@ TEST_CASE("--resin sets resin and exposures; one that no vat holds is an error u
     CHECK(s->materials[0].bottom_exposure_s == 9);
     REQUIRE(drawing.warnings.size() == 1);
     CHECK(drawing.warnings[0].find("resin \"glue\" is not in the printer file") == 0);
+    // Adaptive layers: the virtual printer, too, assumes that light fades by a factor of e in a layer of it.
+    CHECK(s->exposures.empty());
+    order.least_layer = "20 um";
+    drawing = two_blocks();
+    s = job_settings(order, printer(), {}, drawing);
+    REQUIRE(s.has_value());
+    const job::ExposureRule& glue = s->exposures.at("soft");
+    CHECK(glue.penetration_um == printer().layer_um);
+    CHECK(glue.bottom_layers == s->bottom_layers);
     CHECK(refused_settings([](Order& o) { o.resins = {"hard=firm"}; }).find("hard") != std::string::npos);
     CHECK(!refused_settings([](Order& o) { o.resins = {"soft"}; }).empty());
 }

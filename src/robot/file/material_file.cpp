@@ -274,10 +274,10 @@ void read_elastic(Reader& reader, const std::string& law, MaterialSpec& material
 }  // namespace
 
 double read_exposure(Reader& reader, std::string_view key) {
-    constexpr double most_s = 3600;
+    constexpr double least_s = 0.001, most_s = 3600;  // G-code has milliseconds
     if (!reader.has(key)) return (void)reader.raw(key), 0;
     const double seconds = reader.quantity(key, Dimension::time, 1);
-    if (!(seconds > 0 && seconds <= most_s)) reader.problem(key, "must be above 0 s and at most an hour");
+    if (!(seconds >= least_s && seconds <= most_s)) reader.problem(key, "must be from a millisecond to an hour");
     return seconds;
 }
 
