@@ -339,6 +339,19 @@ TEST_CASE("one pixel darkened or added is found, even by one grey value") {
     CHECK(verdict(job_of(pyramid), stray, lights_of(stray)).wrong_images == 1);
 }
 
+TEST_CASE("a cause that spoils every layer is told by a few of them") {
+    Report r;
+    r.findings.push_back({Finding::Kind::missing, "nothing is printed"});
+    for (int k = 1; k <= 200; ++k) r.findings.push_back({Finding::Kind::light, fmt::format("gap {}", k)});
+    for (int m = 1; m <= 5; ++m) r.findings.push_back({Finding::Kind::volume, fmt::format("material {}", m)});
+    const std::string text = report_text(r);
+    CHECK(text.find("  wrong (missing): nothing is printed\n  wrong (light): gap 1\n  wrong (light): gap 2\n"
+                    "  wrong (light): gap 3\n  and 197 more (light)\n  wrong (volume): material 1\n") !=
+          std::string::npos);
+    CHECK(text.find("material 5") != std::string::npos);
+    CHECK(report_json(r).find("gap 200") != std::string::npos);
+}
+
 TEST_CASE("overcure below an underside is allowed up to the known depth; more fails unless accepted") {
     // A table: twenty layers of a leg, twenty of its plate.
     std::vector<job::Image> table(20, corner);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "base/core/counted.hpp"
@@ -86,6 +88,26 @@ Json findings_json(const Report& r) {
     return findings;
 }
 
+/// What is wrong. A cause that spoils every layer has a finding for each: a few of them tell it.
+std::string findings_text(const Report& r) {
+    constexpr std::ptrdiff_t most = 3;
+    std::string text;
+    for (auto f = r.findings.begin(); f != r.findings.end();) {
+        const auto end =
+            std::find_if(f, r.findings.end(), [&kind = f->kind, &accepted = f->accepted](const Finding& o) {
+                return o.kind != kind || o.accepted != accepted;
+            });
+        const bool of_layers = f->kind == Finding::Kind::light || f->kind == Finding::Kind::interlock;
+        const auto left = of_layers ? std::max<std::ptrdiff_t>(0, end - f - most) : 0;
+        const std::string_view name = finding_name(f->kind);
+        for (; f != end - left; ++f)
+            text += fmt::format("  {} ({}): {}\n", f->accepted ? "accepted" : "wrong", name, f->text);
+        if (left > 0) text += fmt::format("  and {} more ({})\n", left, name);
+        f = end;
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string report_json(const Report& r) {
@@ -158,9 +180,7 @@ std::string report_text(const Report& r) {
     text += trapped_text(r);
     if (!r.first_deviation.empty()) text += fmt::format("  first: {}\n", r.first_deviation);
     for (const std::string& mishap : r.log.mishaps) text += fmt::format("  fault: {}\n", mishap);
-    for (const Finding& f : r.findings)
-        text += fmt::format("  {} ({}): {}\n", f.accepted ? "accepted" : "wrong", finding_name(f.kind), f.text);
-    return text;
+    return text + findings_text(r);
 }
 
 }  // namespace pliant::twin
