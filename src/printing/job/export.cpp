@@ -180,7 +180,7 @@ Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, 
         return std::vector<fs::path>{folder};
     }
     std::error_code code;
-    fs::create_directories(folder, code);
+    const bool is_new = fs::create_directories(folder, code);
     if (!fs::is_directory(folder)) return failure("{}: cannot be made a folder", folder.string());
     const char* extension = format == Format::sl1 ? "sl1" : format == Format::nanodlp ? "nanodlp" : "zip";
     std::vector<fs::path> written;
@@ -190,8 +190,10 @@ Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, 
         fs::path path = folder / fmt::format("{}.{}", stem, extension);
         if (std::find(written.begin(), written.end(), path) != written.end())
             path = folder / fmt::format("{}_{}.{}", stem, m, extension);
-        if (auto status = write_stack(archive, static_cast<int>(m), format, path, progress); !status)
+        if (auto status = write_stack(archive, static_cast<int>(m), format, path, progress); !status) {
+            if (is_new && written.empty()) fs::remove(folder, code);
             return tl::unexpected(status.error());
+        }
         written.push_back(path);
     }
     return written;

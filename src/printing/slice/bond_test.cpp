@@ -86,7 +86,7 @@ TEST_CASE("pairs that meet nowhere are told of, once for all that stand for one 
     CHECK(told({{"soft", "firm", 3, 0}}, {}) ==
           std::vector<std::string>{"overlap: soft and firm meet nowhere, no pixel is exposed twice"});
     CHECK(told({}, {{"firm", "hard", 3, 1}}) ==
-          std::vector<std::string>{"interlock: firm and hard meet nowhere, no pixel changes sides"});
+          std::vector<std::string>{"interlock: firm and hard are side by side in no layer, no pixel changes sides"});
     const std::string named = "soft and firm";
     CHECK(told({{"soft", "firm", 3, 0, named}, {"soft of q", "firm", 3, 0, named}}, {}).empty());
     CHECK(told({{"soft", "hard", 3, 0, "soft and hard"}, {"soft of q", "hard", 3, 0, "soft and hard"}}, {}).size() ==

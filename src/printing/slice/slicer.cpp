@@ -488,7 +488,8 @@ Summary Tally::summary() const {
     summary.interlocked = interlocked_;
     summary.overlapped = overlapped_;
     for (const std::string& names : meeting_nowhere(settings.teeth, interlocked_))
-        summary.warnings.push_back(fmt::format("interlock: {} meet nowhere, no pixel changes sides", names));
+        summary.warnings.push_back(
+            fmt::format("interlock: {} are side by side in no layer, no pixel changes sides", names));
     for (const std::string& names : meeting_nowhere(settings.bonds, overlapped_))
         summary.warnings.push_back(fmt::format("overlap: {} meet nowhere, no pixel is exposed twice", names));
     if (closed_gap_pixels_ > 0)
