@@ -15,7 +15,7 @@ import { SaveQuestion } from './simulate/save_robot';
 import { Simulate } from './simulate/simulate';
 import { GeometryDrop, PickGeometry } from './simulate/geometry';
 import { templates } from './simulate/templates';
-import { api, building, documentState, helm, notice, online, post, problems, say, scene, section, send, type Section } from './store';
+import { api, building, documentState, helm, job, notice, online, post, problems, say, scene, section, send, type Section } from './store';
 import { theme, toggleTheme } from './theme';
 import { GuideBar } from './wizard/guide_bar';
 
@@ -36,6 +36,14 @@ function Thumbnail({ of }: { of: string }) {
   );
 }
 
+/// The name of the job under Print if it is not of the open robot: of the one that the machine has, else of the next.
+function otherJob(): string {
+  if (section.value !== 'print') return '';
+  const name = info.value?.machine ? info.value.job : job.value?.manifest.name;
+  const robot = scene.value?.head.robot;
+  return name && robot && name !== robot ? name : '';
+}
+
 function Open() {
   const [project, setProject] = useState<Project | null>(null);
   const toggle = () => {
@@ -46,17 +54,19 @@ function Open() {
       .catch((e: Error) => say(e.message));
   };
   const d = documentState.value;
+  const other = otherJob();
   const box = useRef<HTMLDivElement>(null);
   useDismiss(project !== null, () => setProject(null), box);
   const own = (project?.files ?? []).filter((f) => !project!.printers.includes(f));
   return (
     <div class="menu" ref={box}>
       <button class="document" aria-expanded={project !== null} onClick={toggle} data-testid="open">
-        <span class="title">{scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot')}</span>
+        <span class="title">{other || (scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot'))}</span>
         <span class="quiet">
-          {d.title}
+          {other ? `job; the robot is ${d.title}` : d.title}
           {d.unsaved && ' · unsaved'}
         </span>
+        {d.unsaved && <span class="unsaved">unsaved</span>}
       </button>
       {project && (
         <div class="popover open-list" onClick={() => setProject(null)}>

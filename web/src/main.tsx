@@ -15,7 +15,7 @@ window.addEventListener('hashchange', () => {
 const shown = () => shownFrame.value ?? store.frame.value;
 const project = (p: [number, number, number]) => theView.value?.placeOnPage(p);
 Object.assign(window, { pliant: { ...store, robotText: text, shown, project } });
-store.connect();
+void store.claimPageKey().then(store.connect);
 const root = document.getElementById('app') as HTMLElement;
 root.replaceChildren(); // what index.html shows until here
 render(<App />, root);

@@ -56,18 +56,38 @@ export function onBesideFrame(listener: (next: Frame) => void) {
   takeBeside = listener;
 }
 
-/// Identifies this page; kept over reloads and lost connections.
-function pageKey(): string {
-  const known = sessionStorage.getItem('pliant_page');
-  if (known) return known;
+let socket: WebSocket | null = null;
+
+function newPageKey(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(12));
   const key = Array.from(bytes, (b) => b.toString(16).padStart(2, '0')).join('');
   sessionStorage.setItem('pliant_page', key);
   return key;
 }
-export const page = pageKey();
+const keptKey = sessionStorage.getItem('pliant_page');
+/// Identifies this page; kept over reloads and lost connections.
+export let page = keptKey ?? newPageKey();
 
-let socket: WebSocket | null = null;
+const longestAnswer = 150; // ms
+/// A duplicated tab has a copy of the key of the other one: if another page answers that the key is its own, this one
+/// takes a new one, even where the answer of a busy page comes late.
+export function claimPageKey(): Promise<void> {
+  const pages = new BroadcastChannel('pliant_pages');
+  const asked = page;
+  const question = Math.random();
+  return new Promise((resolve) => {
+    pages.onmessage = ({ data }: MessageEvent<{ whose?: string; question?: number; taken?: number }>) => {
+      if (data.whose === page) pages.postMessage({ taken: data.question });
+      if (data.taken !== question || page !== asked) return; // several may answer
+      page = newPageKey();
+      socket?.close(); // and connects again under that key
+      resolve();
+    };
+    pages.postMessage({ whose: asked, question });
+    setTimeout(resolve, keptKey ? longestAnswer : 0);
+  });
+}
+
 let retry = 250;
 let sceneKnown = false; // this connection has announced the scene of the frames
 let early: Frame | null = null; // the last frame of a scene that is still loading

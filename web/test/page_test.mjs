@@ -452,6 +452,27 @@ test('every template opens as a robot that has no file yet', async (t) => {
   assert.deepEqual(wrong, []);
 });
 
+test('a duplicated tab is a page of its own, and the first keeps control when it is closed', async (t) => {
+  const { page, context, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  const key = (p) => p.evaluate(() => sessionStorage.getItem('pliant_page'));
+  const first = await key(page);
+  // A page that another one opens begins with a copy of its session, as the duplicate of a tab does.
+  const [copy] = await Promise.all([context.waitForEvent('page'), page.evaluate(() => void window.open(location.href))]);
+  await copy.waitForSelector('[data-testid=helm][data-state=watching]', { timeout: 60_000 });
+  assert.notEqual(await key(copy), first);
+  assert.equal(await key(page), first);
+  await copy.reload();
+  await copy.waitForSelector('[data-testid=helm][data-state=watching]', { timeout: 60_000 });
+  await copy.close({ runBeforeUnload: true });
+  await page.waitForFunction(() => window.pliant.helm.value.pages === 1);
+  assert.ok(await page.evaluate(() => window.pliant.helm.value.you));
+  await page.reload();
+  await page.waitForFunction(() => window.pliant.online.value && window.pliant.helm.value.held);
+  assert.equal(await key(page), first, 'a page that is loaded again keeps its key');
+  assert.deepEqual(wrong, []);
+});
+
 test('several pages watch, one is in control, and control can be handed over', async (t) => {
   const first = await openPage(browser, studio.address, t);
   await settled(first.page);
@@ -779,6 +800,36 @@ test('on a small window the sliders are wide enough, and the legend covers neith
   const [legend, view] = [await page.getByTestId('legend').boundingBox(), await page.getByTestId('view').boundingBox()];
   assert.ok(legend.y > view.y + 0.75 * view.height && legend.height < 0.2 * view.height, 'it lies along the lower edge');
   await page.getByTestId('field').selectOption('material');
+});
+
+test('under Print the bar names the job where it is not of the open robot', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await page.waitForFunction(() => window.pliant.job.value !== null);
+  const title = page.getByTestId('open').locator('.title');
+  await page.getByTestId('section-print').click();
+  assert.equal(await title.textContent(), 'finger');
+  await page.evaluate(() => {
+    const j = window.pliant.job.value;
+    window.pliant.job.value = { ...j, manifest: { ...j.manifest, name: 'halves' } };
+  });
+  await says(title, /^halves$/);
+  await page.getByTestId('section-simulate').click();
+  await says(title, /^finger$/);
+  assert.deepEqual(wrong, []);
+});
+
+test('at every width the bar says that the robot is not saved', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.evaluate(() => (window.pliant.documentState.value = { ...window.pliant.documentState.value, unsaved: true }));
+  for (const width of [390, 900, 1100]) {
+    await page.setViewportSize({ width, height: 844 });
+    const told = page.getByTestId('open').locator('span:visible', { hasText: 'unsaved' });
+    assert.equal(await told.count(), 1, `${width}`);
+    const box = await told.boundingBox();
+    assert.ok(box.width > 30 && box.x >= 0 && box.x + box.width <= width, `${width}: ${JSON.stringify(box)}`);
+  }
+  assert.deepEqual(wrong, []);
 });
 
 test('on a phone no button and no field is cut off', async (t) => {
