@@ -221,15 +221,15 @@ function Chosen({ found }: { found: SweepFound }) {
   const run = found.runs[chosen.value];
   if (!run) return <p class="quiet">Click a point of the plot, or a row of the table, to use its values.</p>;
   return (
-    <div class="chosen-run" data-testid="sweep-chosen">
-      <p>
-        {found.axes.map((a, k) => `${shortKey(a).split(',')[0]} ${show(run.inputs[k])}${a.unit && ` ${a.unit}`}`).join(', ')}
-        {run.why && <span class="limit"> {run.why}</span>}
-        {run.warning && <span class="limit" data-testid="sweep-warning"> {run.warning}</span>}
-      </p>
-      <button class="small" disabled={!mayDrive.value} data-testid="sweep-use" onClick={() => void setValues(found.axes.map((a, k) => assignment(a, run.inputs[k])))}>
-        Use these values
-      </button>
+    <div data-testid="sweep-chosen">
+      <div class="chosen-run">
+        <p>{found.axes.map((a, k) => `${shortKey(a).split(',')[0]} ${show(run.inputs[k])}${a.unit && ` ${a.unit}`}`).join(', ')}</p>
+        <button class="small" disabled={!mayDrive.value} data-testid="sweep-use" onClick={() => void setValues(found.axes.map((a, k) => assignment(a, run.inputs[k])))}>
+          Use these values
+        </button>
+      </div>
+      {run.why && <p class="limit">{run.why}</p>}
+      {run.warning && <p class="limit" data-testid="sweep-warning">{run.warning}</p>}
     </div>
   );
 }
