@@ -92,13 +92,6 @@ void print_workspace(const WorkspaceArguments& options, const Model& model, cons
     if (!options.folder.empty()) fmt::print("results: {}\n", options.folder);
 }
 
-void print_warnings(const WorkspaceArguments& options, const Workspace& found) {
-    const auto json = nlohmann::json::parse(found.json());
-    if (!json.contains("warnings")) return;
-    for (const auto& warning : json["warnings"])
-        fmt::print(stderr, "{}: warning: {}\n", options.robot, warning.get<std::string>());
-}
-
 /// An option that this search has no use for.
 void note_useless_options(const WorkspaceArguments& options, std::size_t inputs) {
     if (options.between && inputs == 1)
@@ -130,7 +123,8 @@ Result<int> workspace(const WorkspaceArguments& options) {
             fmt::print("{}", found.json());
         else if (!options.output.quiet)
             print_workspace(options, model, found);
-        print_warnings(options, found);
+        for (const std::string& warning : found.warnings())
+            fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
         note_useless_options(options, found.inputs().size());
         if (found.message().empty()) return exit_done;
         fmt::print(stderr, "{}: {}\n", options.robot, found.message());

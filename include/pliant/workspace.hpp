@@ -51,6 +51,8 @@ public:
     [[nodiscard]] const std::vector<SteeredInput>& inputs() const;
     /// Why no sample has an equilibrium, one sentence; empty if one has.
     [[nodiscard]] const std::string& message() const;
+    /// Reasons not to trust a sample, one sentence each.
+    [[nodiscard]] const std::vector<std::string>& warnings() const;
     /// Number of samples in all pieces.
     [[nodiscard]] std::size_t sample_count() const;
     /// One sample, counted from 0.
@@ -64,7 +66,7 @@ public:
     /// there are none.
     /// @throws Failure if there is no such marker.
     [[nodiscard]] Surface sheets(std::size_t marker) const;
-    /// Number of samples and bounding box of each marker, as in workspace.json.
+    /// Number of samples and bounding box of each marker, and the warnings, as in workspace.json.
     [[nodiscard]] std::string json() const;
     /// Writes the folder that `pliant workspace -o` writes, whole or not at all, replacing an older one: tables,
     /// surfaces and a picture.

@@ -73,6 +73,7 @@ void add_workspace(py::module_& module) {
     py::class_<Workspace>(module, "Workspace")
         .def("inputs", [](const Workspace& space) { return steered_list(space.inputs()); })
         .def_property_readonly("message", &Workspace::message)
+        .def_property_readonly("warnings", &Workspace::warnings)
         .def_property_readonly("sample_count", &Workspace::sample_count)
         .def("sample", [](const Workspace& space, std::size_t k) { return sample_tuple(space.sample(k)); })
         .def("inputs_at", [](const Workspace& space, std::size_t k) { return tuple_of(space.inputs_at(k)); })

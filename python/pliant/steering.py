@@ -222,6 +222,11 @@ class Workspace(NotPickled):
         return self._space.message
 
     @property
+    def warnings(self) -> list[str]:
+        """Reasons not to trust a sample, one sentence each."""
+        return self._space.warnings
+
+    @property
     def markers(self) -> Array:
         """(samples, markers, 3) m; NaN where no equilibrium was found."""
         return self._filled(3, (len(self.model.markers), 3))

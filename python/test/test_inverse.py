@@ -85,6 +85,7 @@ def test_a_workspace_is_sampled(model, tmp_path):
     state = model.solve({"flexor": {"shortening": space.values[k, 0]}})
     assert space.markers[k, 0] == pytest.approx(state.markers()[0], abs=2e-6)
     assert model.solve(space.inputs_at(k)).markers()[0] == pytest.approx(space.markers[k, 0], abs=2e-6)
+    assert space.message == "" and space.warnings == []
     assert space.sheets("tip")[0].shape[1] == 3
     with pytest.raises(pliant.InputError, match="there is no marker 'top'; there are tip"):
         space.sheets("top")

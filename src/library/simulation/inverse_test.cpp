@@ -176,6 +176,25 @@ TEST_CASE("a cancelled workspace search resumes from its checkpoint to the same 
     CHECK_THROWS_AS((void)whole.sheets(1), Failure);
 }
 
+TEST_CASE("a workspace warns of samples at which a chamber would have to pull harder than a vacuum") {
+    const Model model(with_goal(reachable));
+    CHECK(workspace(model, {.side = 2, .between = 0}).warnings().empty());
+    const Model sucked(Robot::parse(R"(name = "cube"
+length_unit = "mm"
+material.soft = { youngs_modulus = "10 MPa", poisson_ratio = 0.45 }
+body = [{ name = "cube", material = "soft", geometry = { difference = [{ box = [[0, 0, 0], [4, 4, 4]] },
+                                                                      { box = [[1, 1, 1], [3, 3, 3]] }] } }]
+fixed = [{ name = "base", box = [[0, 0, 0], [4, 4, 0]] }]
+marker = [{ name = "top", point = [2, 2, 4] }]
+chamber = [{ name = "air", inside = [2, 2, 2], target = { volume_ratio = 1 }, range = [0.9, 1] }]
+mesh = { size = "1 mm", order = 1 }
+)"));
+    const Workspace found = workspace(sucked, {.side = 2, .between = 0});
+    REQUIRE(found.warnings().size() == 1);
+    CHECK(found.warnings()[0].find("the pressure in chamber \"air\" is below a vacuum") != std::string::npos);
+    CHECK(found.json().find("\"warnings\"") != std::string::npos);
+}
+
 TEST_CASE("a damaged piece of a workspace, or one of another search, is solved anew") {
     const test::Folder folder;
     const Model model(with_goal(reachable)), other(with_goal(reachable, {"material.soft.youngs_modulus=2 MPa"}));

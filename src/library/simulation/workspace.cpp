@@ -108,6 +108,7 @@ struct Workspace::Data {
     std::vector<SteeredInput> inputs;
     std::vector<std::pair<std::size_t, const sim::inverse::WorkspaceSample*>> samples;  ///< with their piece
     std::string message;
+    std::vector<std::string> warnings;
     fs::path checkpoint;
     std::shared_ptr<const sim::Equilibrium> system;
 
@@ -141,6 +142,7 @@ Workspace workspace(const Model& model, const WorkspaceOptions& options, const W
         for (const sim::inverse::WorkspaceSample& sample : data->found.pieces[p].samples)
             data->samples.emplace_back(p, &sample);
     }
+    data->warnings = report::workspace_warnings(data->report());
     return Workspace(std::move(data));
 }
 
@@ -151,6 +153,9 @@ const std::vector<SteeredInput>& Workspace::inputs() const {
 }
 const std::string& Workspace::message() const {
     return data_->message;
+}
+const std::vector<std::string>& Workspace::warnings() const {
+    return data_->warnings;
 }
 std::size_t Workspace::sample_count() const {
     return data_->samples.size();

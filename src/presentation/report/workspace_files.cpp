@@ -56,31 +56,6 @@ std::string row(const WorkspaceReport& r, std::size_t piece, const WorkspaceSamp
     return fmt::format("{}\n", fmt::join(cells, ","));
 }
 
-/// Chambers whose pressure falls below a vacuum, which no air can do, one sentence each.
-std::vector<std::string> impossible_samples(const WorkspaceReport& r) {
-    constexpr double rounding = 1e-6;
-    const sim::Description& d = r.model.description();
-    const double least_Pa = -d.ambient_pressure_Pa;
-    std::vector<std::string> warnings;
-    for (std::size_t c = 0; c < d.chambers.size(); ++c) {
-        std::size_t below = 0;
-        double worst_Pa = 0;
-        for (const WorkspacePiece& piece : r.workspace.pieces) {
-            for (const WorkspaceSample& sample : piece.samples) {
-                if (!sample.found || !(sample.pressures_Pa[c] < (1 + rounding) * least_Pa)) continue;
-                ++below;
-                worst_Pa = std::min(worst_Pa, sample.pressures_Pa[c]);
-            }
-        }
-        if (below == 0) continue;
-        warnings.push_back(fmt::format(
-            "at {} the pressure in chamber \"{}\" is below a vacuum, down to {:.4g} kPa: air cannot pull by more than "
-            "{:.4g} kPa (program.ambient_pressure), so that no pump reaches such a volume",
-            counted(below, "sample"), d.chambers[c].name, 1e-3 * worst_Pa, -1e-3 * least_Pa));
-    }
-    return warnings;
-}
-
 /// Every found sample of the sheets as a point, and the cells between them.
 struct Sheets {
     std::vector<const WorkspaceSample*> points;
@@ -154,6 +129,30 @@ std::string workspace_csv(const WorkspaceReport& r) {
     return text;
 }
 
+std::vector<std::string> workspace_warnings(const WorkspaceReport& r) {
+    constexpr double rounding = 1e-6;
+    const sim::Description& d = r.model.description();
+    const double least_Pa = -d.ambient_pressure_Pa;
+    std::vector<std::string> warnings;
+    for (std::size_t c = 0; c < d.chambers.size(); ++c) {
+        std::size_t below = 0;
+        double worst_Pa = 0;
+        for (const WorkspacePiece& piece : r.workspace.pieces) {
+            for (const WorkspaceSample& sample : piece.samples) {
+                if (!sample.found || !(sample.pressures_Pa[c] < (1 + rounding) * least_Pa)) continue;
+                ++below;
+                worst_Pa = std::min(worst_Pa, sample.pressures_Pa[c]);
+            }
+        }
+        if (below == 0) continue;
+        warnings.push_back(fmt::format(
+            "at {} the pressure in chamber \"{}\" is below a vacuum, down to {:.4g} kPa: air cannot pull by more than "
+            "{:.4g} kPa (program.ambient_pressure), so that no pump reaches such a volume",
+            counted(below, "sample"), d.chambers[c].name, 1e-3 * worst_Pa, -1e-3 * least_Pa));
+    }
+    return warnings;
+}
+
 std::string workspace_json(const WorkspaceReport& r, int indent) {
     std::size_t samples = 0, found = 0;
     const auto& markers = r.model.description().markers;
@@ -173,7 +172,7 @@ std::string workspace_json(const WorkspaceReport& r, int indent) {
         out["markers"][markers[m].name] = {{"low_mm", {low.x, low.y, low.z}}, {"high_mm", {high.x, high.y, high.z}}};
     }
     if (const std::string why = sim::inverse::why_nothing_is_found(r.workspace); !why.empty()) out["message"] = why;
-    if (const std::vector<std::string> warnings = impossible_samples(r); !warnings.empty()) out["warnings"] = warnings;
+    if (const std::vector<std::string> warnings = workspace_warnings(r); !warnings.empty()) out["warnings"] = warnings;
     return json_text(out, indent) + "\n";
 }
 

@@ -19,7 +19,9 @@ struct WorkspaceReport {
 
 /// One row per sample: piece, inputs, found, markers, tensions, pressures.
 [[nodiscard]] std::string workspace_csv(const WorkspaceReport& report);
-/// Number of samples, how many have an equilibrium, the bounding box of each marker, mm, and warnings, if any.
+/// Reasons not to trust a sample, one sentence each: chambers whose pressure falls below a vacuum, which no air can do.
+[[nodiscard]] std::vector<std::string> workspace_warnings(const WorkspaceReport& report);
+/// Number of samples, how many have an equilibrium, the bounding box of each marker, mm, and the warnings, if any.
 [[nodiscard]] std::string workspace_json(const WorkspaceReport& report, int indent = 2);
 /// The sheets reached by a marker, m: two triangles for every four neighbours with an equilibrium. Empty if there are
 /// none.
