@@ -10,7 +10,7 @@
 #include "printing/plan/plan.hpp"
 #include "printing/plan/timeline.hpp"
 #include "studio/base/dumped.hpp"
-#include "studio/print/print_session.hpp"
+#include "studio/print/printer_json.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -83,7 +83,7 @@ std::string job_json(const OpenJob& open, bool saved) {
                  {"manifest", parse_json(job::to_json(manifest))},
                  {"colours", open.origin.colours},
                  {"issues", issues_json(manifest)},
-                 {"projector", parse_json(projector_json(p.projector))},
+                 {"projector", projector_json(p.projector)},
                  {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
                  {"source", open.origin.source.empty() ? Json(nullptr) : parse_json(open.origin.source)},
                  {"printer", p.name}};

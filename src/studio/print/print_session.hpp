@@ -111,9 +111,6 @@ private:
 /// terminal.
 [[nodiscard]] Status check_device(const std::string& device);
 
-/// Position of the machine's images on its platform, for drawing on pages: JSON.
-[[nodiscard]] std::string projector_json(const machine::Projector& projector);
-
 /// The ports with a device and the displays that may be projectors: JSON.
 [[nodiscard]] std::string ports_json();
 

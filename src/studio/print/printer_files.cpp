@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
-#include "base/core/json.hpp"
 #include "base/core/toml_edit.hpp"
 #include "printing/machine/board_report.hpp"
 #include "printing/machine/switches.hpp"
@@ -12,7 +11,7 @@
 #include "studio/base/dumped.hpp"
 #include "studio/built_in/examples.hpp"
 #include "studio/print/millimetres.hpp"
-#include "studio/print/print_session.hpp"
+#include "studio/print/printer_json.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -156,7 +155,7 @@ std::string printer_setup_json(const std::string& name, const machine::Printer& 
                     {{"width_mm", mm(p.platform.width_um)},
                      {"depth_mm", mm(p.platform.depth_um)},
                      {"height_mm", mm(p.platform.build_height_um)}}},
-                   {"projector", parse_json(projector_json(p.projector))}});
+                   {"projector", projector_json(p.projector)}});
 }
 
 std::string built_in_printers_json() {
