@@ -8,7 +8,7 @@ import { Bed } from './bed';
 import { Compare } from './compare';
 import { jobFileName } from './file_name';
 import { goal, Layers, layer } from './layers';
-import { SliceForm } from './order';
+import { SliceForm } from './slice_form';
 import { clock, PlanView } from './plan';
 import { Stack } from './stack';
 import { changes, staleText } from './stale';
