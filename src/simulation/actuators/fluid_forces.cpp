@@ -11,6 +11,7 @@
 #include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/actuators/cross_matrix.hpp"
+#include "simulation/actuators/wet_part.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -20,10 +21,6 @@ using linalg::Matrix9;
 using linalg::Vector3;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-/// Barycentric coordinates of a quadrature rule of degree 2 on a triangle, with equal weights.
-constexpr std::array<std::array<double, 3>, 3> rule{
-    {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
-
 /// The direction of gravity, and the specific weight of the fluid.
 struct Weight {
     Vector3 down = Vector3::Zero();
@@ -31,10 +28,8 @@ struct Weight {
     double level_m = 0;
     bool has_level = false;
 
-    [[nodiscard]] double depth(const Vector3& x) const {
-        const double depth = level_m + down.dot(x);
-        return has_level ? std::max(depth, 0.0) : depth;
-    }
+    /// Negative above the level.
+    [[nodiscard]] double depth(const Vector3& x) const { return level_m + down.dot(x); }
 };
 
 Weight weight_of(const Fluid& fluid, const FluidForces::Gravity& gravity) {
@@ -48,7 +43,10 @@ Weight weight_of(const Fluid& fluid, const FluidForces::Gravity& gravity) {
 
 struct Corners {
     std::array<Vector3, 3> x;
-    [[nodiscard]] Vector3 at(const std::array<double, 3>& b) const { return b[0] * x[0] + b[1] * x[1] + b[2] * x[2]; }
+    [[nodiscard]] Depths depths(const Weight& weight) const {
+        return {weight.depth(x[0]), weight.depth(x[1]), weight.depth(x[2])};
+    }
+    [[nodiscard]] Vector3 middle() const { return (x[0] + x[1] + x[2]) / 3; }
     /// Twice the area, along the normal.
     [[nodiscard]] Vector3 twice_area() const { return (x[1] - x[0]).cross(x[2] - x[0]); }
 };
@@ -70,14 +68,12 @@ Sunk sunk(const Weight& weight, const Corners& c) {
     for (std::size_t i = 0; i < 3; ++i)
         sunk.ds.segment<3>(3 * static_cast<Eigen::Index>(i)) =
             0.5 * (c.x[(i + 1) % 3] - c.x[(i + 2) % 3]).cross(weight.down);
-    for (const std::array<double, 3>& b : rule) {
-        const double depth = weight.depth(c.at(b));
-        if (weight.has_level && !(depth > 0)) continue;
-        Vector9 change;
-        for (std::size_t i = 0; i < 3; ++i) change.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i] * weight.down;
-        sunk.Q += depth * depth / 6;
-        sunk.dQ += depth / 3 * change;
-        sunk.ddQ += change * change.transpose() / 3;
+    const MeanSquare mean = mean_square(c.depths(weight), weight.has_level);
+    sunk.Q = mean.value;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        sunk.dQ.segment<3>(3 * i) = mean.first[i] * weight.down;
+        for (Eigen::Index j = 0; j < 3; ++j)
+            sunk.ddQ.block<3, 3>(3 * i, 3 * j) = mean.second(i, j) * weight.down * weight.down.transpose();
     }
     return sunk;
 }
@@ -149,12 +145,10 @@ void FluidForces::add_buoyancy(std::span<const double> x, const Gravity& gravity
     }
     for (const auto& t : std::span(closed_skin_).last(cap_count_)) {
         const Corners c = corners(x, t);
-        for (const std::array<double, 3>& b : rule) {
-            const Vector3 pressed = weight.N_m3 * weight.depth(c.at(b)) / 6 * c.twice_area();
-            for (std::size_t i = 0; i < 3; ++i) {
-                Eigen::Map<Vector3> on(forces.data() + 3 * static_cast<std::size_t>(t[i]));
-                on -= b[i] * pressed;
-            }
+        const MeanSquare mean = mean_square(c.depths(weight), weight.has_level);
+        for (std::size_t i = 0; i < 3; ++i) {
+            Eigen::Map<Vector3> on(forces.data() + 3 * static_cast<std::size_t>(t[i]));
+            on -= 0.5 * weight.N_m3 * mean.first[static_cast<Eigen::Index>(i)] * c.twice_area();
         }
     }
 }
@@ -186,13 +180,8 @@ FluidForces::Piece FluidForces::piece(const std::array<int, 3>& triangle, const 
     const double size = twice_area.norm();
     Piece piece;
     if (!(size > 0)) return piece;
-    double wet = 1;
-    if (fluid_.level_m) {
-        const Weight weight = weight_of(fluid_, motion.gravity);
-        wet = 0;
-        for (const std::array<double, 3>& b : rule) wet += weight.depth(begin.at(b)) > 0 ? 1.0 / 3 : 0;
-    }
-    const Vector3 u = v.at({1.0 / 3, 1.0 / 3, 1.0 / 3}) - linalg::vector(fluid_.current_m_s);
+    const double wet = fluid_.level_m ? wet_share(begin.depths(weight_of(fluid_, motion.gravity))) : 1;
+    const Vector3 u = v.middle() - linalg::vector(fluid_.current_m_s);
     piece.factor = 0.25 * fluid_.density_kg_m3 * size * wet;
     piece.normal = twice_area / size;
     piece.along = piece.normal.dot(u);
