@@ -383,3 +383,69 @@ TEST_CASE("mistakes in time steps give one line each") {
                                "time_step = \"1 ms\"\nintegrator = \"energy-conserving\"\n"),
                   "cable \"c\" is driven by its length");
 }
+
+namespace {
+
+/// A weight of 100 g that hangs on a cable with 50 mm of slack.
+sim::Trajectory fall_into_slack(const std::string& program) {
+    return run_text(R"(
+name = "caught"
+length_unit = "mm"
+[material.rubber]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0.45
+[[body]]
+name = "post"
+material = "rubber"
+geometry = { box = [[-300, 0, 10], [-290, 10, 20]] }
+[mesh]
+size = "10 mm"
+order = 1
+[[fixed]]
+name = "clamp"
+plane = { point = [0, 0, 10], normal = [0, 0, 1] }
+[[object]]
+name = "weight"
+geometry = { box = [[-5, -5, -5], [5, 5, 5]] }
+mass = "100 g"
+[[cable]]
+name = "rope"
+points = [[0, 0, 100], [0, 0, 5]]
+anchor = "first"
+target = { shortening = "-50 mm" }
+[program]
+gravity = [0, 0, -9.81]
+duration = "0.2 s"
+key = [{ time = "0 s", rope = "-50 mm" }]
+)" + program);
+}
+
+constexpr double fall_energy_J = 0.1 * g * 0.05;
+
+}  // namespace
+
+TEST_CASE("a weight that falls into a slack cable is caught and does not rise again, whatever the time step") {
+    for (const double step_ms : {5.0, 3.0, 2.5, 2.0, 1.2, 1.0, 0.8, 0.5}) {
+        CAPTURE(step_ms);
+        const sim::Trajectory result = fall_into_slack(fmt::format("time_step = \"{} ms\"", step_ms));
+        REQUIRE(result.converged);
+        bool is_caught = false;
+        double before = energy(result.steps.front());
+        for (const sim::Step& step : result.steps) {
+            CHECK(energy(step) < before + 1e-3 * fall_energy_J);
+            before = energy(step);
+            is_caught = is_caught || height(step) < -0.0495;
+            if (is_caught) CHECK(height(step) < -0.0495);
+        }
+        CHECK(is_caught);
+        CHECK(height(result.steps.back()) == near(-0.05, {.absolute = 1e-5}));
+        CHECK(result.steps.back().cables[0].tension_N == near(0.1 * g, {.relative = 0.01}));
+    }
+}
+
+TEST_CASE("a weight that a slack cable throws back, with error-controlled steps, has no more energy than before") {
+    const sim::Trajectory result = fall_into_slack("time_step = \"2 ms\"\ntime_tolerance = \"0.01 mm\"");
+    REQUIRE(result.converged);
+    for (const sim::Step& step : result.steps)
+        CHECK(energy(step) < energy(result.steps.front()) + 0.01 * fall_energy_J);
+}

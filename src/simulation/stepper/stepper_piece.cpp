@@ -9,11 +9,13 @@
 #include "simulation/solver/friction_rounds.hpp"
 #include "simulation/stepper/prediction.hpp"
 #include "simulation/stepper/step_piece.hpp"
+#include "simulation/stepper/taut_cables.hpp"
 
 namespace pliant::sim {
 namespace {
 
 constexpr int friction_rounds = 30;
+constexpr int steps_of_impact = 3;  // with a formula that takes away the velocity from before it
 
 /// Positions a step ago; at the start of a motion those of now.
 const Eigen::VectorXd& a_step_ago(const History& history) {
@@ -67,21 +69,27 @@ bool Stepper::chooses_scheme() const {
         return std::isfinite(joint.law.low) || std::isfinite(joint.law.high);
     };
     return is_adaptive() || options_.dynamics->integrator != Integrator::bdf2 || model_.contact(true) != nullptr ||
+           std::ranges::any_of(system_.actuators(), &Actuator::only_pulls) ||
            std::ranges::any_of(model_.description().joints, has_stop);
 }
 
+/// 0: nothing touches; else the number of this step among those since something new did.
 int Stepper::touching_after(const RobotState& robot, const State& next, const Controls& controls) const {
     const Touching there = system_.touching(next, controls);
-    if (there.none()) return 0;
-    const bool as_before = there.is_part_of(system_.touching(robot.now.state, robot.controls));
-    return as_before ? std::max(robot.history.touching, 1) + 1 : 1;
+    const std::vector<int> holding = holding_cables(system_, next, controls);
+    const bool as_before = there.is_part_of(system_.touching(robot.now.state, robot.controls)) &&
+                           std::ranges::includes(taut_cables(system_, robot.now.state, robot.controls), holding);
+    if (!as_before) return 1;
+    const int so_far = robot.history.touching;
+    if (!there.none()) return std::max(so_far, 1) + 1;
+    const bool is_caught = !holding.empty() && 0 < so_far && so_far < steps_of_impact;
+    return is_caught ? so_far + 1 : 0;
 }
 
 /// Things that touch use formulas that dissipate unresolved motion, as in an impact. The step in which that begins, and
 /// the two after it, do not use earlier states: the first may end just where the surfaces meet, so that only the second
 /// takes the velocity away, and BDF2 looks back two steps.
 Scheme Stepper::scheme(const RobotState& robot, const Controls& controls) const {
-    constexpr int steps_of_impact = 3;
     if (robot.history.touching > 0 && robot.history.touching < steps_of_impact) return Scheme::euler;
     if (!is_adaptive() && options_.dynamics->integrator == Integrator::bdf2) return Scheme::even;
     if (robot.history.touching > 0 || options_.dynamics->integrator == Integrator::bdf2) return Scheme::bdf2;
