@@ -274,6 +274,43 @@ test('a wrong option is reported at its field before anything is sliced', async 
   assert.deepEqual(wrong, []);
 });
 
+test('a resin that no vat holds is told at its field in words of the form, which can allow it; another robot begins without it', async (t) => {
+  const other = await startStudio();
+  t.after(() => other.stop());
+  writeFileSync(join(other.folder, 'table.toml'), table);
+  writeFileSync(join(other.folder, 'glued.toml'), table.replace('name = "table"\nlength', 'name = "glued"\nlength').replace('semi-flex', 'glue'));
+  const { page, wrong } = await withRobot(t, other, 'glued');
+  const told = page.getByTestId('wrong-resin');
+  await told.waitFor(); // before anything is sliced
+  assert.match(await told.textContent(), /^no vat of tower prototype holds the resin "glue" of "soft": .* Choose another resin above, or tick “Fill resins that no vat holds into free vats”\.$/);
+  assert.equal(await page.getByLabel('Resin of soft').getAttribute('aria-invalid'), 'true');
+  assert.equal(await page.getByTestId('estimate').count(), 0, 'what cannot be printed takes no time');
+  await page.getByTestId('option-layer').fill('500');
+  await page.getByTestId('option-any-vat').check();
+  await page.getByTestId('estimate').waitFor();
+  assert.equal(await told.count(), 0);
+  await slice(page);
+  assert.equal(JSON.parse(unzipped(await (await page.request.get(`${other.address}api/job/file`)).body(), 'manifest.json')).any_vat, true);
+  await page.getByTestId('option-any-vat').uncheck();
+  await page.waitForFunction(() => /\(resins\)/.test(document.querySelector('[data-testid=stale]').textContent));
+
+  // The error of slicing goes with the robot, and with its text.
+  const failed = () => page.evaluate(() => window.pliant.sliceError.value);
+  await page.getByTestId('slice').click();
+  await page.waitForFunction(() => window.pliant.sliceError.value !== '');
+  await post(page, '/api/robot/set', { changes: [{ key: 'mesh.size', value: '7 mm' }] });
+  await page.waitForFunction(() => window.pliant.sliceError.value === '');
+  await told.waitFor(); // the robot with its new text has that resin too
+  await page.getByTestId('slice').click();
+  await page.waitForFunction(() => window.pliant.sliceError.value !== '');
+  await page.getByTestId('make-bed').click();
+  await post(page, '/api/open', { name: 'table.toml' });
+  await page.getByTestId('estimate').waitFor();
+  assert.equal(await failed(), '');
+  assert.equal(await told.count(), 0);
+  assert.deepEqual(wrong, []);
+});
+
 test('the name of a job file is suggested; without an earlier job there is nothing to compare with', async (t) => {
   const other = await startStudio();
   t.after(() => other.stop());

@@ -33,7 +33,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 let page;
 before(async () => {
   pretendBrowser();
-  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'counted', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace', 'simulate/goal', 'simulate/editor'];
+  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'counted', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'make/wrong', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace', 'simulate/goal', 'simulate/editor'];
   const entry = join(folder, 'entry.ts');
   writeFileSync(entry, modules.map((m) => `export * from ${JSON.stringify(join(sources, m))};`).concat(`export { setParameter } from ${JSON.stringify(join(sources, 'simulate/build'))};`).join('\n'));
   const outfile = join(folder, 'units.mjs');
@@ -113,8 +113,18 @@ test('a decimal comma is refused in exposures, where it would separate two', () 
   assert.equal(page.commaProblem({ b: { resin: '', time: '2,5', bottom: '' } }, ['a']), '');
 });
 
+test('an error of the studio is told at its field, in words of the form instead of those of the command line', () => {
+  assert.deepEqual(page.wrongOf('--layer: 0 is not a height'), { option: 'layer', value: '', text: '0 is not a height' });
+  assert.deepEqual(page.wrongOf('--resin soft=: a name is needed'), { option: 'resin', value: 'soft=', text: 'a name is needed' });
+  assert.equal(page.wrongOf('--drain: needs --hollow').text, 'needs “Wall thickness”');
+  assert.equal(page.wrongOf('bar.toml:3: no such key'), null);
+  const vat = page.wrongOf('no vat of tower holds the resin "glue" of "weich & zart": they hold a and b. Slice with --resin MATERIAL=RESIN, or with --any-vat to fill it into a free vat');
+  assert.deepEqual([vat.option, vat.value], ['resin', 'glue']);
+  assert.match(vat.text, /^no vat of tower holds the resin "glue" of "weich & zart": they hold a and b\. Choose another resin above, or tick “[^-]+”\.$/);
+});
+
 test('another robot does not begin with the placement, bonds and supports of the last one', () => {
-  page.setOrder({ printer: 'tower', copies: 2, turn: [90, 0, 0], scale: 2, at: [3, 4], overlap: ['a+b=3,1'], support: 'a' });
+  page.setOrder({ printer: 'tower', copies: 2, turn: [90, 0, 0], scale: 2, at: [3, 4], overlap: ['a+b=3,1'], support: 'a', 'any-vat': true });
   page.forgetPart();
   assert.deepEqual(page.orderJson(['a', 'b']), { printer: 'tower', copies: 2, resin: [], exposure: [], overlap: [], interlock: [] });
   page.setOrder({});
@@ -255,6 +265,7 @@ test('a form that takes the order of a job gives the same order again', () => {
     at: [1, -2],
     'no-anti-alias': true,
     threshold: 0.4,
+    'any-vat': true,
     resin: ['soft=semi-flex'],
     exposure: ['soft=2.5 s,8 s', 'hard=3 s'],
     overlap: ['soft+hard=3,1'],

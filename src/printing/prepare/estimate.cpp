@@ -115,7 +115,7 @@ job::Manifest empty_job(const job::JobSettings& settings, double height_um) {
     manifest.pixel_um = settings.slicing.raster.pixel_um;
     manifest.bottom_layers = settings.bottom_layers;
     manifest.materials = settings.materials;
-    manifest.any_vat = true;
+    manifest.any_vat = settings.any_vat;
     const int layer_um = settings.slicing.layer_um;
     const int layers = static_cast<int>(std::lround(height_um / layer_um));
     for (int k = 0; k < layers; ++k) manifest.layers.push_back({(k + 1) * layer_um, layer_um, {}});
@@ -127,7 +127,6 @@ job::Manifest empty_job(const job::JobSettings& settings, double height_um) {
 Result<plan::Plan> estimate(Order order, const machine::Printer& printer, Drawing drawing) {
     if (!drawing.stacks.empty()) return input_error("layer images are planned when they are sliced: no estimate");
     if (Status status = leave_out_slow(order); !status) return tl::unexpected(status.error());
-    order.any_vat = true;
     const Result<job::JobSettings> read = job_settings(order, printer, std::nullopt, drawing);
     if (!read) return tl::unexpected(read.error());
     job::JobSettings settings = *read;

@@ -150,4 +150,10 @@ TEST_CASE("orders that slicing refuses have no estimate") {
     CHECK_FALSE(estimate(order, tower().printer, blocks()));
     order.layer = "";
     CHECK(estimate(order, tower().printer, blocks()));
+    order.resins = {"soft=glue"};
+    const auto unknown = estimate(order, tower().printer, blocks());
+    REQUIRE_FALSE(unknown);
+    CHECK(unknown.error().message.find("no vat of tower prototype holds the resin \"glue\" of \"soft\"") == 0);
+    order.any_vat = true;
+    CHECK(estimate(order, tower().printer, blocks()));
 }

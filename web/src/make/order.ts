@@ -4,6 +4,7 @@ import { onEvent, scene, sliceError } from '../store';
 import { orderProblem } from './estimate';
 import { paintTable, readPaint, strokes, touches } from './paint';
 import type { Room } from './place';
+import { wrongOf } from './wrong';
 
 export interface PrinterInfo {
   name: string;
@@ -46,16 +47,21 @@ export const shift = signal<[number, number]>([0, 0]);
 export const plainPixels = signal(false);
 export const bonds = signal<Bond[]>([]);
 export const lights = signal<Record<string, Light>>({});
+/// A resin that no vat holds is to be filled into a free one.
+export const anyVat = signal(false);
 export const support = signal('');
 
 /// The error of the last slicing, or what the studio finds wrong with the form as it is.
 export const commas = computed(() => commaProblem(lights.value, scene.value?.head.materials.map((m) => m.name) ?? []));
 export const problem = computed(() => sliceError.value || commas.value || orderProblem.value);
 /// The option that it refers to, and its message.
-export const wrong = computed(() => {
-  const match = /^--([a-z-]+)(?: ([^:]*))?: (.*)$/s.exec(problem.value);
-  return match ? { option: match[1], value: match[2] ?? '', text: match[3] } : null;
-});
+export const wrong = computed(() => wrongOf(problem.value));
+
+/// What has been changed is no longer wrong, until the studio says so again.
+export function forgetProblem() {
+  sliceError.value = '';
+  orderProblem.value = '';
+}
 
 export const unitOf: Record<string, string> = { layer: 'um', 'least-layer': 'um', 'support-angle': '' };
 
@@ -76,7 +82,7 @@ export const wholeOrder = (materials: string[]) => {
 };
 
 /// Everything in the form, to notice whether somebody has touched it.
-const formText = () => JSON.stringify([printer, copies, fields, turn, scale, shift, plainPixels, bonds, lights, support, strokes].map((s) => s.peek()));
+const formText = () => JSON.stringify([printer, copies, fields, turn, scale, shift, plainPixels, bonds, lights, anyVat, support, strokes].map((s) => s.peek()));
 let given = formText(); // by the page itself or by a job
 
 /// A value without the unit that its field adds.
@@ -121,6 +127,7 @@ export function setOrder(order: Record<string, unknown>) {
     plainPixels.value = order['no-anti-alias'] === true;
     bonds.value = bondsOf(order);
     lights.value = lightsOf(order);
+    anyVat.value = order['any-vat'] === true;
     support.value = String(order.support ?? '');
     strokes.value = order['support-paint'] ? [{ touches: readPaint(String(order['support-paint'])) }] : [];
   });
@@ -141,6 +148,7 @@ export function forgetPart() {
     scale.value = 1;
     shift.value = [0, 0];
     bonds.value = [];
+    anyVat.value = false;
     support.value = '';
     strokes.value = [];
   });
@@ -148,10 +156,12 @@ export function forgetPart() {
 }
 
 let opened: unknown; // number of the open document
+let digest: unknown; // of its text
 onEvent((event) => {
   if (event.type !== 'document') return;
   if (opened !== undefined && event.opened !== opened) forgetPart();
-  opened = event.opened;
+  if (digest !== undefined && event.digest !== digest) forgetProblem();
+  [opened, digest] = [event.opened, event.digest];
 });
 
 /// In an order a comma separates two exposures: a decimal one would be taken for that.
@@ -177,6 +187,7 @@ export function orderJson(materials: string[]) {
   const used = Object.entries(lights.value).filter(([m]) => materials.includes(m));
   order.resin = used.filter(([, l]) => l.resin).map(([m, l]) => `${m}=${l.resin}`);
   order.exposure = used.filter(([, l]) => l.time).map(([m, l]) => `${m}=${seconds(l.time)}${l.bottom ? `,${seconds(l.bottom)}` : ''}`);
+  if (anyVat.value) order['any-vat'] = true;
   for (const kind of ['overlap', 'interlock'] as const)
     order[kind] = bonds.value.filter((b) => b.kind === kind).map((b) => `${b.a}+${b.b}=${b.pixels},${b.layers}`);
   return order;

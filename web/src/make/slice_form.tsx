@@ -6,15 +6,10 @@ import { Icon } from '../icons';
 import { NumberField } from '../number_field';
 import { api, documentState, mayDrive, post, say, scene, sliceError, slicing } from '../store';
 import { keyOf } from '../simulate/toml_edit';
-import { orderProblem, useEstimate } from './estimate';
-import { type Bond, bonds, commas, copies, fields, type Light, lights, orderJson, plainPixels, printer, type PrinterInfo, printerInfo, problem, scale, shift, support, turn, unitOf, wholeOrder, wrong } from './order';
+import { useEstimate } from './estimate';
+import { anyVat, type Bond, bonds, commas, copies, fields, forgetProblem, type Light, lights, orderJson, plainPixels, printer, type PrinterInfo, printerInfo, problem, scale, shift, support, turn, unitOf, wholeOrder, wrong } from './order';
 import { strokes } from './paint';
-
-/// A value that has been changed is no longer wrong, until the studio says so again.
-function forget() {
-  sliceError.value = '';
-  orderProblem.value = '';
-}
+import { labels } from './wrong';
 
 function Problem({ option }: { option: string }) {
   if (wrong.value?.option !== option) return null;
@@ -42,7 +37,7 @@ function Field({ option, label, hint, title }: { option: string; label: string; 
             data-testid={`option-${option}`}
             onInput={(e) => {
               fields.value = { ...fields.value, [option]: e.currentTarget.value };
-              if (bad) forget();
+              if (bad) forgetProblem();
             }}
           />
           <span class="unit">{option === 'support-angle' ? '°' : unit}</span>
@@ -80,17 +75,19 @@ function Materials({ materials }: { materials: string[] }) {
   const resinOf = (m: string) => scene.value?.head.materials.find((x) => x.name === m)?.resin || m;
   const set = (m: string, change: Partial<Light>) => {
     lights.value = { ...lights.value, [m]: { ...(lights.value[m] ?? { resin: '', time: '', bottom: '' }), ...change } };
-    forget();
+    forgetProblem();
   };
   return (
-    <Group name="Resins, colours and exposure" options={['exposure', 'resin']} given={Object.values(lights.value).some((l) => l.resin || l.time)}>
+    <Group name="Resins, colours and exposure" options={['exposure', 'resin']} given={anyVat.value || Object.values(lights.value).some((l) => l.resin || l.time)}>
       <datalist id="resins">
         {p?.resins.map((r) => (
           <option value={r.name} />
         ))}
       </datalist>
       {materials.map((m, k) => {
-        const known = p?.resins.find((r) => r.name === (lights.value[m]?.resin || resinOf(m)));
+        const resin = lights.value[m]?.resin || resinOf(m);
+        const known = p?.resins.find((r) => r.name === resin);
+        const bad = wrong.value?.option === 'resin' && wrong.value.value === resin;
         return (
           <fieldset class="light-of" key={m}>
             <legend>
@@ -99,7 +96,7 @@ function Materials({ materials }: { materials: string[] }) {
             </legend>
             <label>
               <span>Resin</span>
-              <input list="resins" aria-label={`Resin of ${m}`} placeholder={resinOf(m)} value={lights.value[m]?.resin ?? ''} onInput={(e) => set(m, { resin: e.currentTarget.value })} />
+              <input list="resins" aria-label={`Resin of ${m}`} aria-invalid={bad} placeholder={resinOf(m)} value={lights.value[m]?.resin ?? ''} onInput={(e) => set(m, { resin: e.currentTarget.value })} />
             </label>
             <label>
               <span>Exposure (s)</span>
@@ -113,6 +110,18 @@ function Materials({ materials }: { materials: string[] }) {
         );
       })}
       <Problem option="resin" />
+      <label class="tick" title="You fill them in before the print; the plan says into which vats">
+        <input
+          type="checkbox"
+          checked={anyVat.value}
+          data-testid="option-any-vat"
+          onChange={(e) => {
+            anyVat.value = e.currentTarget.checked;
+            forgetProblem();
+          }}
+        />
+        <span>{labels.anyVat}</span>
+      </label>
       <Problem option="exposure" />
       {p && (
         <p class="quiet small-print" data-testid="mask">
@@ -126,7 +135,7 @@ function Materials({ materials }: { materials: string[] }) {
 function Bonds({ materials }: { materials: string[] }) {
   const change = (k: number, by: Partial<Bond>) => {
     bonds.value = bonds.value.map((b, i) => (i === k ? { ...b, ...by } : b));
-    forget();
+    forgetProblem();
   };
   const pick = (value: string, set: (v: string) => void, label: string) => (
     <select value={value} aria-label={label} onChange={(e) => set(e.currentTarget.value)}>
@@ -285,7 +294,7 @@ function Fine() {
 function Hollow() {
   return (
     <Group name="Hollow" options={['hollow', 'drain']} given={Boolean(fields.value.hollow)}>
-      <Field option="hollow" label="Wall thickness" hint="solid" />
+      <Field option="hollow" label={labels.wall} hint="solid" />
       <Field option="drain" label="Drain hole diameter" hint="none" />
     </Group>
   );
@@ -325,7 +334,7 @@ export function SliceForm() {
       }}
       onSubmit={(e) => {
         e.preventDefault();
-        forget();
+        forgetProblem();
         if (commas.value) return;
         // Errors in the order itself are shown at their field too.
         const form = e.currentTarget;

@@ -16,6 +16,7 @@ const names: Record<string, string> = {
   scale: 'scale',
   at: 'position',
   resin: 'resins',
+  'any-vat': 'resins',
   exposure: 'exposure',
   overlap: 'bonds',
   interlock: 'bonds',
