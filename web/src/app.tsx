@@ -62,10 +62,7 @@ function Open() {
     <div class="menu" ref={box}>
       <button class="document" aria-expanded={project !== null} onClick={toggle} data-testid="open">
         <span class="title">{other || (scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot'))}</span>
-        <span class="quiet">
-          {other ? `job; the robot is ${d.title}` : d.title}
-          {d.unsaved && ' · unsaved'}
-        </span>
+        <span class="quiet">{other ? `job; the robot is ${d.title}` : d.title}</span>
         {d.unsaved && <span class="unsaved">unsaved</span>}
       </button>
       {project && (

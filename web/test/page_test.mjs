@@ -829,6 +829,16 @@ test('at every width the bar says that the robot is not saved', async (t) => {
     const box = await told.boundingBox();
     assert.ok(box.width > 30 && box.x >= 0 && box.x + box.width <= width, `${width}: ${JSON.stringify(box)}`);
   }
+  // Beside a long name too: that is what is shortened.
+  await page.evaluate(() => {
+    const s = window.pliant.scene.value;
+    window.pliant.scene.value = { ...s, head: { ...s.head, robot: 'a name that goes on and on, '.repeat(4) } };
+  });
+  for (const width of [390, 1200]) {
+    await page.setViewportSize({ width, height: 844 });
+    const [bar, told] = [await page.getByTestId('open').boundingBox(), await page.getByTestId('open').locator('.unsaved').boundingBox()];
+    assert.ok(told.width > 30 && told.x + told.width <= bar.x + bar.width, `${width}: ${JSON.stringify([bar, told])}`);
+  }
   assert.deepEqual(wrong, []);
 });
 
