@@ -15,7 +15,7 @@ import { SaveQuestion } from './simulate/save_robot';
 import { Simulate } from './simulate/simulate';
 import { GeometryDrop, PickGeometry } from './simulate/geometry';
 import { templates } from './simulate/templates';
-import { api, building, documentState, helm, job, notice, online, post, problems, say, scene, section, send, type Section } from './store';
+import { api, building, documentState, helm, job, newRobot, notice, online, post, problems, say, scene, section, send, type Section } from './store';
 import { theme, toggleTheme } from './theme';
 import { GuideBar } from './wizard/guide_bar';
 
@@ -108,9 +108,6 @@ function Open() {
     </div>
   );
 }
-
-const newRobot = (text: string) =>
-  api('/api/robot/new', { method: 'POST', headers: { 'Content-Type': 'text/plain' }, body: text }).catch((e: Error) => say(e.message));
 
 function Helm() {
   const h = helm.value;

@@ -3,6 +3,7 @@ import { computed, signal } from '@preact/signals';
 import { useDialog } from './dismiss';
 import { documentState, helm } from './store';
 import { theirs, text, revert } from './simulate/editor';
+import { keptTexts } from './simulate/kept_texts';
 
 /// True if there is text that the studio does not have, or that is in no file. The latter is left to the page that has
 /// control.
@@ -17,7 +18,7 @@ export function unlessLost(what: string, go: () => void) {
 }
 
 window.addEventListener('beforeunload', (e) => {
-  if (unsaved.value) e.preventDefault();
+  if (unsaved.value || keptTexts.value.length > 0) e.preventDefault();
 });
 
 export function DiscardQuestion() {

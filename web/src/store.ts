@@ -15,7 +15,7 @@ export const lines = signal(0);
 export const helm = signal({ you: true, held: true, asked: false, waiting: false, pages: 1 });
 export const mayDrive = computed(() => online.value && helm.value.you);
 
-export const documentState = signal({ name: '', title: 'example', unsaved: false, undo: 0, redo: 0, accuracy: 'automatic' as Accuracy, digest: '' });
+export const documentState = signal({ name: '', title: 'example', unsaved: false, undo: 0, redo: 0, accuracy: 'automatic' as Accuracy, digest: '', opened: 0 });
 export const scene = signal<Scene | null>(null);
 /// The latest frame; with linear elements it is a fast preview, too stiff to be a result, and that of a reduced model is
 /// nearly one.
@@ -144,6 +144,17 @@ export async function post(path: string, body?: unknown, tell: (why: string) => 
     return true;
   } catch (error) {
     tell((error as Error).message);
+    return false;
+  }
+}
+
+/// Opens a robot that has no file yet, with this text.
+export async function newRobot(text: string): Promise<boolean> {
+  try {
+    await api('/api/robot/new', { method: 'POST', headers: { 'Content-Type': 'text/plain' }, body: text });
+    return true;
+  } catch (error) {
+    say((error as Error).message);
     return false;
   }
 }

@@ -292,6 +292,66 @@ test('a file that was changed elsewhere is saved over only after a question', as
   assert.deepEqual(wrong.filter((w) => !/409/.test(w)), []);
 });
 
+test('where the question is answered by not saving, it comes again only with another change', async (t) => {
+  writeFileSync(join(folder, 'theirs.toml'), block('1 MPa'));
+  const own = await startStudio(['theirs.toml'], folder);
+  t.after(() => own.stop());
+  const { page } = await openPage(browser, own.address, t);
+  await settled(page);
+  await page.getByTestId('tab-file').click();
+  await page.getByTestId('autosave').check();
+  writeFileSync(join(folder, 'theirs.toml'), `# a colleague\n${block('5 MPa')}`);
+  const asked = page.getByTestId('changed-question');
+  await typeRobot(page, block('2 MPa'));
+  await rebuilt(page, () => page.getByTestId('apply').click());
+  await asked.waitFor();
+  await page.getByTestId('keep-unsaved').click();
+  await asked.waitFor({ state: 'detached' });
+  await typeRobot(page, block('2 MPa').replace('length = 40', 'length = 0'));
+  await page.getByTestId('problems').waitFor(long); // the typed text has been checked
+  await typeRobot(page, block('3 MPa'));
+  await page.getByTestId('problems').waitFor({ state: 'detached' });
+  await page.waitForTimeout(500);
+  assert.equal(await asked.count(), 0, 'nothing has been applied');
+  await rebuilt(page, () => page.getByTestId('apply').click());
+  await asked.waitFor();
+  await page.getByTestId('keep-unsaved').click();
+  await page.getByTestId('autosave').uncheck();
+});
+
+test('text that was not applied stays with its robot when another page opens another one', async (t) => {
+  writeFileSync(join(folder, 'mine.toml'), block('1 MPa'));
+  writeFileSync(join(folder, 'other.toml'), block('7 MPa').replace('"block"', '"other"'));
+  const own = await startStudio(['mine.toml'], folder);
+  t.after(() => own.stop());
+  const { page, wrong } = await openPage(browser, own.address, t);
+  await settled(page);
+  await page.getByTestId('tab-file').click();
+  const mine = `# typed\n${block('1 MPa')}`;
+  await typeRobot(page, mine);
+  // Another page takes over, and opens another robot.
+  const second = await openPage(browser, own.address, t);
+  await second.page.waitForSelector('[data-testid=helm][data-state=watching]');
+  await second.page.evaluate(() => window.pliant.send({ type: 'steer', action: 'ask' }));
+  await page.evaluate(() => window.pliant.send({ type: 'steer', action: 'give' }));
+  await second.page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached' });
+  const open = (p, name) => p.evaluate((n) => window.pliant.post('/api/open', { name: n }), name);
+  await open(second.page, 'other.toml');
+  const kept = page.getByTestId('kept-text');
+  await kept.waitFor();
+  assert.match(await kept.textContent(), /mine\.toml that was not applied is kept/);
+  assert.match(await readRobot(page), /"7 MPa"/);
+  await second.page.evaluate(() => window.pliant.send({ type: 'steer', action: 'leave' }));
+  await second.context.close();
+  await page.waitForFunction(() => window.pliant.helm.value.you);
+  assert.ok(await page.getByTestId('apply').isDisabled());
+  await page.getByTestId('kept-open').click();
+  await page.waitForFunction((m) => window.pliant.robotText.value === m, mine);
+  assert.equal(await page.evaluate(() => window.pliant.documentState.value.name), 'mine.toml');
+  await kept.waitFor({ state: 'detached' });
+  assert.deepEqual(wrong, []);
+});
+
 test('a chamber is made from a drawn box or from a cavity clicked on, and both can be undone', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);

@@ -6,6 +6,7 @@ import { NumberField } from '../number_field';
 import { api, building, documentState, frame, helm, lines, mayDrive, onEvent, post, problems, say, scene } from '../store';
 import type { Material, Problem } from '../types';
 import { CodeArea } from './code_area';
+import { isSameRobot, keep as keepText, type Origin, takeKept } from './kept_texts';
 import { saveRobot } from './save_robot';
 import { keyOf } from './toml_edit';
 import { pinned } from './view_state';
@@ -23,9 +24,11 @@ let applied: string | null = null; // being sent to the studio
 let loads = 0;
 let savedLine = 0; // the connection, and whether the text was in a file, at the last update
 let wasUnsaved = false;
+let ofRobot: Origin | null = null; // what the text in the editor is of
 
 /// Changes that have not been applied are kept, whoever has control by now, also those that are typed before the
-/// studio's text arrives, and so is text that a restarted studio no longer has.
+/// studio's text arrives, and so is text that a restarted studio no longer has. They stay in the editor only beside their
+/// own robot: applied to another one, they would be saved into its file.
 async function load() {
   const mineBefore = text.value;
   const line = lines.value;
@@ -37,15 +40,22 @@ async function load() {
   const lost = line !== savedLine && wasUnsaved && next !== theirs.value;
   const keep = (dirty || (lost && helm.value.you)) && mine !== next;
   const overtaken = keep && !lost && !helm.value.you && next !== theirs.value;
+  const robot = documentState.value;
+  const other = keep && ofRobot !== null && !isSameRobot(ofRobot, robot, line !== savedLine);
+  if (other) keepText(mine, ofRobot!);
+  const stays = keep && !other;
+  const back = stays ? null : takeKept(robot);
   batch(() => {
     theirs.value = next;
-    if (!keep) text.value = next;
+    if (!stays) text.value = back ?? next;
   });
-  if (lost && keep) say('The studio was restarted without your unsaved text. It is still here under File: press Apply to restore it.');
-  if (overtaken) say('Another page has changed the robot. Your text that was not applied is still here under File.');
+  if (other) say(`Another robot was opened. Your text of ${ofRobot!.title} that was not applied is kept under File.`);
+  else if (lost && keep) say('The studio was restarted without your unsaved text. It is still here under File: press Apply to restore it.');
+  else if (overtaken) say('Another page has changed the robot. Your text that was not applied is still here under File.');
   applied = null;
   savedLine = line;
   wasUnsaved = documentState.value.unsaved;
+  ofRobot = robot;
 }
 onEvent((event) => {
   if (event.type === 'document') load().catch((e: Error) => say(e.message));
@@ -189,6 +199,7 @@ export const autosave = signal(localStorage.getItem('pliant_autosave') === 'on')
 autosave.subscribe((on) => localStorage.setItem('pliant_autosave', on ? 'on' : 'off'));
 let digest = ''; // of the text that is known last
 let builtBefore = -1; // revision of the robot that was shown when it came
+let tried = ''; // digest of the text that was to be saved last: where that is refused, it is not asked for again
 /// A text is saved once it has been built: until then nobody knows whether it has errors.
 effect(() => {
   const d = documentState.value;
@@ -198,7 +209,11 @@ effect(() => {
     builtBefore = revision;
   }
   const isBuilt = revision > builtBefore && problems.value.length === 0 && !building.value;
-  if (autosave.value && d.unsaved && d.name && mayDrive.value && isBuilt) void saveRobot();
+  const wanted = autosave.value && d.unsaved && d.name !== '' && mayDrive.value;
+  if (!wanted) tried = '';
+  if (!wanted || !isBuilt || tried === d.digest) return;
+  tried = d.digest;
+  void saveRobot();
 });
 
 export function Editor() {

@@ -33,7 +33,7 @@ export function SaveQuestion() {
         </p>
         <div class="row left wrap">
           <button class="primary" ref={(b) => b?.focus()} onClick={close} data-testid="keep-unsaved">
-            Leave unsaved
+            Do not save
           </button>
           <button
             class="danger"

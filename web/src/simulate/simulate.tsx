@@ -12,6 +12,7 @@ import { FirstPicture } from './first_picture';
 import { Goal } from './goal';
 import { Hints } from './hints';
 import { Identify } from './identify';
+import { KeptList } from './kept_list';
 import { Legend } from './legend';
 import { LookBar } from './look_bar';
 import { NoRobot } from './no_robot';
@@ -107,6 +108,7 @@ export function Simulate() {
           {panel.value === 'file' && (
             <>
               <Materials />
+              <KeptList />
               <Editor />
             </>
           )}
