@@ -12,6 +12,7 @@
 #include "base/core/config.hpp"
 #include "base/core/files.hpp"
 #include "base/core/letters.hpp"
+#include "base/core/shell_word.hpp"
 #include "base/core/text.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
@@ -103,8 +104,9 @@ Status make(const NewOptions& options) {
     const std::string text = options.name ? renamed(found->text, *options.name) : std::string(found->text);
     if (fs::path(file).has_parent_path()) fs::create_directories(fs::path(file).parent_path(), ignored);
     if (Status written = write_file(file, text); !written) return written;
-    const std::string next = of_robots ? fmt::format("pliant studio {0}   or   pliant simulate {0} -o out", file)
-                                       : fmt::format("pliant slice ROBOT.toml --printer {} -o JOB.zip", file);
+    const std::string word = shell_word(file);
+    const std::string next = of_robots ? fmt::format("pliant studio {0}   or   pliant simulate {0} -o out", word)
+                                       : fmt::format("pliant slice ROBOT.toml --printer {} -o JOB.zip", word);
     if (options.output.json)
         print_json(nlohmann::json{{"file", file}, {"template", name}, {"name", title_of(text)}});
     else if (!options.output.quiet)

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "base/core/file_handle.hpp"
+#include "base/core/shell_word.hpp"
 
 using namespace pliant;
 
@@ -134,4 +135,8 @@ TEST_CASE("a forked program leaves the child processes of the one before it alon
 TEST_CASE("texts in shell quotes come back from a shell as they were") {
     const std::string text = "it's $HOME `x` \"y\" \\";
     CHECK(run("printf %s " + in_shell_quotes(text)).said == text);
+    CHECK(run("printf %s " + shell_word(text)).said == text);
+    CHECK(shell_word("jobs/my_finger-2.zip") == "jobs/my_finger-2.zip");
+    CHECK(shell_word("my finger.toml") == "'my finger.toml'");
+    CHECK(shell_word("") == "''");
 }

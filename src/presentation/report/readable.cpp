@@ -6,6 +6,16 @@
 #include <cmath>
 
 namespace pliant::report {
+namespace {
+
+/// A value that is rounded to 0 has no sign.
+std::string fixed(double value, int decimals) {
+    std::string text = fmt::format("{:.{}f}", value, decimals);
+    if (text.find_first_not_of("-0.") == std::string::npos && text.front() == '-') text.erase(0, 1);
+    return text;
+}
+
+}  // namespace
 
 std::string readable(double value, int decimals, double rounding) {
     return readable({&value, 1}, decimals, rounding);
@@ -20,7 +30,7 @@ std::string readable(std::span<const double> values, int decimals, double roundi
     for (const double value : values) {
         if (!text.empty()) text += ", ";
         if (fits)
-            text += fmt::format("{:.{}f}", value, decimals);
+            text += fixed(value, decimals);
         else
             text += fmt::format("{:.5g}", std::fabs(value) < least_share * largest ? 0.0 : value);
     }

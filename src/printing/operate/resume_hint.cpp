@@ -4,30 +4,17 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 
-#include <algorithm>
-#include <string_view>
 #include <utility>
 
 #include "base/core/file_handle.hpp"
 #include "base/core/files.hpp"
+#include "base/core/shell_word.hpp"
 #include "printing/host/journal_facts.hpp"
 #include "printing/host/resume_point.hpp"
 #include "printing/operate/programs.hpp"
 
 namespace pliant::operate {
 namespace {
-
-/// In single quotes unless it is plain.
-std::string shell_word(const std::string& text) {
-    const auto is_plain = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               std::string_view("_-./:,+=@%").find(c) != std::string_view::npos;
-    };
-    if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
-    std::string word = "'";
-    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return word + "'";
-}
 
 /// Whether a host prints with this journal at the moment.
 bool is_in_use(const std::filesystem::path& journal) {
