@@ -842,6 +842,19 @@ test('at every width the bar says that the robot is not saved', async (t) => {
   assert.deepEqual(wrong, []);
 });
 
+test('on a phone the hints cover none of what they speak of', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
+  const hint = page.getByTestId('hint');
+  await hint.waitFor();
+  for (const other of [page.locator('#actuator-0'), page.getByTestId('view'), page.getByTestId('tab-file')]) {
+    const [a, b] = [await hint.boundingBox(), await other.boundingBox()];
+    assert.ok(a.y + a.height <= b.y + 1 || b.y + b.height <= a.y + 1, JSON.stringify([a, b]));
+  }
+  await page.setViewportSize({ width: 1100, height: 844 });
+  assert.ok(await hint.isVisible(), 'over the view on a wide screen');
+  assert.deepEqual(wrong, []);
+});
+
 test('on a phone no button and no field is cut off', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
   await page.waitForFunction(() => window.pliant.job.value !== null);

@@ -1,5 +1,6 @@
 // The interactive robot: 3D view, panels, timeline.
 import { Lost } from '../lost';
+import { narrow } from '../narrow';
 import { lines, online, problems, scene } from '../store';
 import { Accuracies } from './accuracy';
 import { Actuators } from './actuators';
@@ -69,12 +70,13 @@ export function Simulate() {
         {scene.value && <ViewCube />}
         <Measure />
         <div class="stage-foot">
-          {online.value || lines.value === 0 ? scene.value && <Hints /> : <Lost text="so the robot is shown as it was last known." />}
+          {online.value || lines.value === 0 ? scene.value && !narrow.value && <Hints /> : <Lost text="so the robot is shown as it was last known." />}
           {scene.value && <ScaleBar />}
           <Status />
         </div>
       </section>
       <aside class="side">
+        {narrow.value && scene.value && online.value && <Hints />}
         <div class="tabs">
           <div class="tab-list four" role="tablist" aria-label="Panels" onKeyDown={walk}>
             {tabs.map(([name, label]) => (
