@@ -33,7 +33,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 let page;
 before(async () => {
   pretendBrowser();
-  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'counted', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'make/wrong', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace', 'simulate/goal', 'simulate/editor'];
+  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'counted', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'make/wrong', 'simulate/exact', 'simulate/kept_texts', 'simulate/program_time', 'simulate/actuators', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace', 'simulate/goal', 'simulate/editor'];
   const entry = join(folder, 'entry.ts');
   writeFileSync(entry, modules.map((m) => `export * from ${JSON.stringify(join(sources, m))};`).concat(`export { setParameter } from ${JSON.stringify(join(sources, 'simulate/build'))};`).join('\n'));
   const outfile = join(folder, 'units.mjs');
@@ -330,6 +330,63 @@ test('a slowly curving recording keeps its path within 0.2 %', () => {
     const there = v0 + ((t - t0) / (t1 - t0)) * (v1 - v0);
     assert.ok(Math.abs(there - value) < 0.002 * Math.max(value, 1), `at ${t} s: ${there}, recorded ${value}`);
   });
+});
+
+test('a recording has what was asked for, and readings without the noise of the solver', () => {
+  const cable = { name: 'pull', type: 'cable', kind: 'shortening_mm', rest: 100, target: 5 };
+  const written = (arrived, length_mm, asked) => {
+    page.scene.value = { head: { actuators: [cable], markers: [], supports: [], obstacles: [] } };
+    const wanted = { time: 0, actuators: asked === undefined ? [] : [{ name: 'pull', kind: 'shortening_mm', value: asked }] };
+    page.frame.value = { head: { revision: 78, arrived, wanted, cables: [{ length_mm, ratio: length_mm / 100, tension_N: 0 }], chambers: [], markers: [] } };
+    const value = page.writtenReading(cable, 'shortening_mm');
+    page.frame.value = null;
+    return value;
+  };
+  assert.equal(written(true, 97.00004, 3), 3);
+  assert.equal(written(true, 100.000006, 0), 0);
+  assert.equal(written(false, 100.000006, 3) + 0, 0);
+  assert.equal(+written(true, 97.12344).toPrecision(5), 2.8766);
+});
+
+test('an exact curve goes on over a single approximate state, and has a gap where there are several', () => {
+  const [e, r] = [false, true];
+  const curve = (kinds) => page.exactCurve(kinds.map((_, i) => i), kinds.map((_, i) => 10 * i), kinds);
+  assert.deepEqual(curve([e, r, e, r, e]), { x: [0, 2, 4], y: [0, 20, 40] });
+  assert.deepEqual(curve([e, r, r, e]), { x: [0, 1, 2, 3], y: [0, NaN, NaN, 30] });
+  assert.deepEqual(curve([r, e, r]), { x: [0, 1, 2], y: [NaN, 10, NaN] });
+});
+
+test('a text that was not applied comes back with its own robot only', () => {
+  const finger = { name: 'finger.toml', title: 'finger.toml', opened: 1 };
+  const fresh = { name: '', title: 'bar', opened: 2 };
+  assert.ok(page.isSameRobot(finger, { ...finger, opened: 7 }, false), 'opened again');
+  assert.ok(page.isSameRobot(finger, { ...finger, name: 'copy.toml' }, false), 'saved under another name');
+  assert.ok(!page.isSameRobot(finger, { ...fresh, opened: 1 }, true), 'numbers of another studio mean nothing');
+  assert.ok(!page.isSameRobot(fresh, { ...fresh, opened: 3 }, false));
+  assert.ok(page.isSameRobot(fresh, { ...fresh, opened: 3 }, true), 'a studio that was started again');
+  page.keep('a', finger);
+  page.keep('b', finger);
+  assert.equal(page.takeKept(fresh), null);
+  assert.equal(page.takeKept({ ...finger, opened: 9 }), 'b');
+  assert.deepEqual(page.keptTexts.value, []);
+});
+
+test('times of a program are seconds where it has them, else shares', () => {
+  const words = (program, file) => {
+    page.scene.value = { head: { actuators: [], markers: [], program } };
+    page.theirs.value = file;
+    return page.programTime(0.5, program.duration, 2);
+  };
+  assert.equal(words({ steps: 4, duration: 1 }, ''), '50 %');
+  assert.equal(words({ steps: 4, duration: 2 }, ''), '0.50 s');
+  assert.equal(words({ steps: 4, duration: 1, timed: true }, ''), '0.50 s');
+  assert.equal(words({ steps: 4, duration: 1 }, '[[program.key]]\ntime = "1 s"\n'), '0.50 s');
+  page.theirs.value = '';
+});
+
+test('what is rounded to 0 has no sign', () => {
+  assert.deepEqual([-0.001, -0, 0.001, -0.005001, -10].map((v) => page.fixed(v, 2)), ['0.00', '0.00', '0.00', '-0.01', '-10.00']);
+  assert.equal(page.fixed(-0.3, 0), '0');
 });
 
 test('an hour of recording beside a robot that stands still is read at once', () => {

@@ -1,5 +1,6 @@
 // A slider and a number for every actuator.
 import { batch } from '@preact/signals';
+import { fixed } from '../counted';
 import { NumberField, type Range } from '../number_field';
 import { driveAll, following, frame, mayDrive, rough, scene, wanted, wantedTime } from '../store';
 import type { Actuator } from '../types';
@@ -44,6 +45,18 @@ export function reading(actuator: Actuator, kind: string): number {
   if (kind === 'volume_change_mm3') return c.volume_mm3 - c.volume_mm3 / c.ratio;
   if (kind === 'gas_ratio') return ((c.pressure_kPa + 101.325) / 101.325) * c.ratio;
   return c.ratio;
+}
+
+/// For a file: what was asked for once the robot is there, else the reading without the digits that only say how far the
+/// solver went, a hundred-thousandth of the slider.
+export function writtenReading(actuator: Actuator, kind: string): number {
+  const head = shownHead();
+  const asked = head?.arrived ? head.wanted.actuators.find((w) => w.name === actuator.name && w.kind === kind) : undefined;
+  if (asked) return asked.value;
+  const now = reading(actuator, kind);
+  const [low, high] = range(actuator, kind, now);
+  const finest = 10 ** Math.floor(Math.log10(1e-5 * (high - low)));
+  return Number.isFinite(finest) && finest > 0 ? Math.round(now / finest) * finest : now;
 }
 
 function range(actuator: Actuator, kind: string, value: number): [number, number] {
@@ -130,8 +143,8 @@ function Control({ actuator }: { actuator: Actuator }) {
   const index = scene.value!.head.actuators.indexOf(actuator);
   const force =
     actuator.type === 'cable'
-      ? `${(head?.cables[index]?.tension_N ?? 0).toFixed(2)} N`
-      : `${(head?.chambers[index - (head?.cables.length ?? 0)]?.pressure_kPa ?? 0).toFixed(2)} kPa`;
+      ? `${fixed(head?.cables[index]?.tension_N ?? 0, 2)} N`
+      : `${fixed(head?.chambers[index - (head?.cables.length ?? 0)]?.pressure_kPa ?? 0, 2)} kPa`;
   const id = `actuator-${index}`;
   const limit = head?.lead?.limits.find((l) => l.startsWith(`${actuator.name} `))?.slice(actuator.name.length + 1);
   return (

@@ -4,6 +4,7 @@ import { Icon } from '../icons';
 import { readPacket } from '../packet';
 import { api, mayDrive, post, say, scene } from '../store';
 import type { Frame, FrameHead } from '../types';
+import { inSeconds, programTime } from './program_time';
 import { begin, refused, result, searching } from './search';
 import * as look from './view_state';
 
@@ -100,8 +101,8 @@ function tick(now: number) {
   if (!m || !playing.peek()) return;
   const passed = Math.min((now - last) / 1000, 0.1);
   last = now;
-  const next = at.peek() + passed * speed.peek() * (m.timed ? 1 : m.duration / 3); // a program without seconds is
-                                                                                   // played in three
+  // A program without seconds is played in three.
+  const next = at.peek() + passed * speed.peek() * (inSeconds.peek() ? 1 : m.duration / 3);
   at.value = Math.min(next, lastTime(m));
   if (at.peek() >= lastTime(m)) playing.value = false;
   show();
@@ -123,7 +124,7 @@ export function leaveMotion() {
   look.shownFrame.value = null;
 }
 
-const words = (seconds: number, m: Motion) => (m.timed ? `${seconds.toFixed(seconds < 10 ? 2 : 1)} s` : `${Math.round((100 * seconds) / m.duration)} %`);
+const words = (seconds: number, m: Motion) => programTime(seconds, m.duration, seconds < 10 ? 2 : 1);
 
 /// Replaces the timeline of the replay while there is a motion.
 export function MotionTrack() {

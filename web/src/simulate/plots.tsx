@@ -7,6 +7,7 @@ import { counted } from '../counted';
 import { Icon } from '../icons';
 import { say, scene } from '../store';
 import { cssColour, theme } from '../theme';
+import { exactCurve } from './exact';
 import { axisRange, freeTableName, keepRun, plottedVersion, readTable, runs, tracks, valuesOf, type Channel } from './tracks';
 
 /// Powers of ten, thinned out: grid lines of a logarithmic axis over many decades would merge into a grey block.
@@ -31,14 +32,15 @@ interface Shown {
   extra?: string;
 }
 
-type Curve = { label: string; x: number[]; y: number[]; colour: string; dash?: number[]; points?: boolean; now?: string };
+/// `approximate`: its points that stand alone are hollow.
+type Curve = { label: string; x: number[]; y: number[]; colour: string; dash?: number[]; points?: boolean; approximate?: boolean; now?: string };
 
 const channel = (key: string): Channel | undefined => tracks.channels.find((c) => c.key === key);
 const shortLabel = (c: Channel, all: boolean) => (all ? c.label.replace(/: [^:]*$/, '') : c.label);
 const readable = (v: number | undefined, unit: string, log = false) =>
   v === undefined || !Number.isFinite(v) ? '–' : `${log ? v.toExponential(1) : +v.toPrecision(5)}${unit && ` ${unit}`}`;
 
-/// The curves: for every result the quadratic states and, if there are any, the linear ones separately, dashed.
+/// The curves: for every result the exact states and, if there are any, the approximate ones separately, dashed.
 function curvesOf(shown: Shown): Curve[] {
   const sameKind = new Set(shown.y.map((k) => channel(k)?.kind)).size === 1;
   const xs = shown.x ? valuesOf(shown.x) : tracks.seconds;
@@ -47,13 +49,14 @@ function curvesOf(shown: Shown): Curve[] {
     const c = channel(key);
     if (!c) return;
     const ys = valuesOf(key);
-    const pick = (rough: boolean) => ys.map((v, i) => (tracks.rough[i] === rough ? v : NaN));
+    const exact = shown.log ? { x: xs, y: ys } : exactCurve(xs, ys, tracks.rough);
     const colour = palette[k % palette.length];
     const roughNow = tracks.rough.at(-1) ?? false;
     const label = shortLabel(c, sameKind);
     const now = `${roughNow ? '≈ ' : ''}${readable(ys.at(-1), c.unit, shown.log)}`;
-    curves.push({ label, x: xs, y: shown.log ? ys : pick(false), colour, now });
-    if (!shown.log && tracks.rough.includes(true)) curves.push({ label: `≈ ${label}`, x: xs, y: pick(true), colour, dash: [3, 4] });
+    curves.push({ label, ...exact, colour, now });
+    if (!shown.log && tracks.rough.includes(true))
+      curves.push({ label: `≈ ${label}`, x: xs, y: ys.map((v, i) => (tracks.rough[i] ? v : NaN)), colour, dash: [3, 4], approximate: true });
     for (const [r, run] of runs.value.entries()) {
       const [x, y] = [run.columns[shown.x || 'seconds'] ?? run.columns.time, run.columns[key]];
       if (x && y) curves.push({ label: `${run.name}: ${label}`, x, y, colour: palette[(k + shown.y.length + r) % palette.length], dash: [8, 4], points: x.length < 60 });
@@ -105,7 +108,8 @@ function drawCurves(u: uPlot, curves: Curve[]) {
       if (!Number.isFinite(c.y[i]) || !(c.points || alone)) return;
       ctx.beginPath();
       ctx.arc(u.valToPos(at, 'x', true), u.valToPos(c.y[i], 'y', true), 2.5 * devicePixelRatio, 0, 7);
-      ctx.fill();
+      if (c.approximate) ctx.stroke();
+      else ctx.fill();
     });
   }
   ctx.restore();

@@ -1,4 +1,5 @@
 // Table of markers, contact forces and the target of a led marker.
+import { fixed } from '../counted';
 import { frame, isRough, scene } from '../store';
 import * as look from './view_state';
 
@@ -19,7 +20,7 @@ export function Readings() {
               {m.name}
             </th>
             {(shown.markers[k] ?? []).map((v) => (
-              <td>{v.toFixed(2)}</td>
+              <td>{fixed(v, 2)}</td>
             ))}
             <td class="unit">mm</td>
           </tr>
@@ -28,7 +29,7 @@ export function Readings() {
           <tr class="pinned-row" key={`pin${k}`}>
             <th>{look.pinned.value!.markers[k]} pinned</th>
             {p.map((v) => (
-              <td>{v.toFixed(2)}</td>
+              <td>{fixed(v, 2)}</td>
             ))}
             <td class="unit">mm</td>
           </tr>
@@ -58,7 +59,7 @@ export function Readings() {
                 {o.object ? `force on ${o.name}` : `force of ${o.name}`}
               </th>
               {force.map((v) => (
-                <td>{v.toFixed(2)}</td>
+                <td>{fixed(v, 2)}</td>
               ))}
               <td class="unit">N</td>
             </tr>
@@ -68,7 +69,7 @@ export function Readings() {
           <tr>
             <th>{mark}applied force</th>
             {pull.force_N.map((v) => (
-              <td>{v.toFixed(2)}</td>
+              <td>{fixed(v, 2)}</td>
             ))}
             <td class="unit">N</td>
           </tr>

@@ -1,7 +1,7 @@
 // Records the user's actions as a program: [[program.key]] of a robot file.
 import { effect, signal } from '@preact/signals';
 import { scene } from '../store';
-import { reading } from './actuators';
+import { writtenReading } from './actuators';
 import { type Change, changeText } from './editor';
 import { replaceEntries } from './toml_edit';
 
@@ -25,7 +25,7 @@ export function startRecording() {
   const take = () => {
     // In the units of the file's own targets, so that the keys fit it.
     const all = scene.peek()?.head.actuators ?? [];
-    const values = Object.fromEntries(all.map((a) => [a.name, { kind: a.kind, value: reading(a, a.kind) }]));
+    const values = Object.fromEntries(all.map((a) => [a.name, { kind: a.kind, value: writtenReading(a, a.kind) }]));
     recorded.value = [...recorded.value, { time: (performance.now() - started) / 1000, values }];
   };
   timer = window.setInterval(take, interval_ms);

@@ -1,5 +1,4 @@
 // The program over time: play, replay, rest, record.
-import { computed } from '@preact/signals';
 import { counted } from '../counted';
 import { Icon } from '../icons';
 import {
@@ -17,11 +16,11 @@ import {
   wanted,
   wantedTime,
 } from '../store';
-import { text, theirs } from './editor';
+import { text } from './editor';
 import { motion, MotionNotes, MotionTrack, RunMotion } from './motion';
 import { panel } from './panel';
+import { programTime } from './program_time';
 import { asProgram, endOf, insertKeys, recorded, recording, startRecording, stopRecording } from './recorder';
-import { hasProgramKeys } from './toml_edit';
 import { clearTracks, frames, tracksVersion } from './tracks';
 import * as look from './view_state';
 
@@ -42,8 +41,6 @@ function toRest() {
   askForRest();
   clearTracks();
 }
-
-const inSeconds = computed(() => (scene.value?.head.program.timed ?? false) || hasProgramKeys(theirs.value));
 
 export function Timeline() {
   tracksVersion.value;
@@ -66,7 +63,7 @@ export function Timeline() {
       <label class="track">
         <span>Program</span>
         <input type="range" data-testid="program" min={0} max={duration} step={duration / 1000} value={time} disabled={!mayDrive.value} style={{ '--at': `${(100 * time) / duration}%` }} class={following.value ? '' : 'idle'} onInput={(e) => follow(Number(e.currentTarget.value))} />
-        <output>{duration === 1 && !inSeconds.value ? `${Math.round(100 * time)} %` : `${time.toFixed(2)} s`}</output>
+        <output>{programTime(time, duration, 2)}</output>
       </label>
       {motion.value ? (
         <MotionTrack />
