@@ -167,9 +167,12 @@ void check_stations(Reader& root, const Printer& p) {
     if (p.store() == Store::table) within(Axis::table, p.table.cleaning_um, "the cleaning station");
     within(Axis::platform, 0, "the floor of the vat");
     const int highest_um = p.axis(Axis::platform).max_um;
-    if (p.platform.lift_um >= highest_um)
-        root.problem("platform.lift", fmt::format("is {:.3f} mm; the platform's travel ends at {:.3f} mm",
-                                                  p.platform.lift_um / 1000.0, highest_um / 1000.0));
+    const int most_lift_um = highest_um - p.platform.build_height_um;
+    if (most_lift_um > 0 && p.platform.lift_um > most_lift_um)
+        root.problem("platform.lift",
+                     fmt::format("must be at most {:.3f} mm, so that a part as tall as build_height "
+                                 "({:.3f} mm) is lifted within the platform's travel, to {:.3f} mm",
+                                 most_lift_um / 1000.0, p.platform.build_height_um / 1000.0, highest_um / 1000.0));
     within(Axis::platform, p.clear_um(p.platform.build_height_um) + p.cleaning.stroke_z_um,
            "the tallest part, lifted clear of the vat for cleaning,");
     if (!p.has_carriage()) return;

@@ -99,8 +99,11 @@ TEST_CASE("an invalid printer file gives a line with file, key and remedy") {
     CHECK(holds(message_with("home = \"max\"", "home = \"min\""), "clear of the vat"));
     CHECK(holds(message_with("\"1460 mm\"", "\"1400 mm\""), "the last slot"));
     CHECK(holds(message_with("travel = \"29.5 mm\"", "travel = \"120 mm\""), "less than the tower's clearance"));
-    CHECK(holds(message_with("\nlift = \"5 mm\"", "\nlift = \"500 mm\""),
-                "platform.lift: is 500.000 mm; the platform's travel"));
+    // 400 mm of travel less 304.8 mm of the tallest part.
+    CHECK(holds(message_with("\nlift = \"5 mm\"", "\nlift = \"95.201 mm\""),
+                "platform.lift: must be at most 95.200 mm, so that a part as tall as build_height (304.800 mm) is "
+                "lifted within the platform's travel, to 400.000 mm"));
+    CHECK(message_with("\nlift = \"5 mm\"", "\nlift = \"95.2 mm\"").empty());
     CHECK(holds(message_with("speed = \"40 mm/s\"", "speed = \"0 mm/s\""), "must be above 0"));
     CHECK(holds(message_with("speed = \"40 mm/s\"", "speed = 40"), "has no unit"));
     CHECK(holds(message_with("shear = \"2 mm\"", "sheer = \"2 mm\""), "sheer"));
