@@ -1,6 +1,7 @@
 #include "printing/job/export.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -446,6 +447,23 @@ TEST_CASE("pixels lit in two stacks go to one of them, with a warning") {
     CHECK(made->manifest.layers[0].images[0].material == 1);
     CHECK(made->manifest.warnings.at(0) ==
           "images of \"soft\": 0.025 mm^3 are exposed by other materials too, which keep them");
+}
+
+TEST_CASE("a second series of images of the same size is named, for it is left out") {
+    const pliant::test::Folder folder("export");
+    const std::string png = encode_png(slice::RunImage(30, 20));
+    for (const char* name : {"b0.png", "b1.png", "b2.png", "a1.png", "a2.png", "cover1.png"})
+        REQUIRE(write_file(folder / name, png).has_value());
+    const auto stack = ImageStack::open(folder.path());
+    REQUIRE(stack.has_value());
+    CHECK(stack->left_out() == fmt::format("{}: the layers are the 3 images b0.png to b2.png; the 2 images a1.png to "
+                                           "a2.png, which have the same size, are left out",
+                                           folder.path().string()));
+    // A single image is no series, and small pictures of the layers are not layers.
+    REQUIRE(write_file(folder / "a1.png", encode_png(slice::RunImage(15, 10))).has_value());
+    CHECK(ImageStack::open(folder.path())->left_out().empty());
+    fs::remove(folder / "a2.png");
+    CHECK(ImageStack::open(folder.path())->left_out().empty());
 }
 
 TEST_CASE("stacks with missing numbers, without images or of different sizes are refused") {

@@ -39,18 +39,29 @@ std::optional<std::pair<std::string, long>> split_name(const std::string& name) 
     return std::pair(name.substr(0, begin), std::stol(name.substr(begin, end - begin)));
 }
 
-/// The entries of the largest group, in order.
-Result<std::vector<StackImage>> choose(const std::vector<std::string>& names, const std::string& path) {
-    std::map<std::string, std::vector<StackImage>> groups;
+/// Images whose names differ in their numbers alone, in order.
+using Group = std::vector<StackImage>;
+
+/// The largest group comes first; of those of one size, the first by name.
+std::vector<Group> groups_of(const std::vector<std::string>& names) {
+    std::map<std::string, Group> by_name;
     for (const std::string& name : names) {
-        if (const auto split = split_name(name)) groups[split->first].push_back({name, split->second});
+        if (const auto split = split_name(name)) by_name[split->first].push_back({name, split->second});
     }
+    std::vector<Group> groups;
+    for (auto& [name, group] : by_name) {
+        std::sort(group.begin(), group.end(),
+                  [](const StackImage& l, const StackImage& r) { return l.number < r.number; });
+        groups.push_back(std::move(group));
+    }
+    std::stable_sort(groups.begin(), groups.end(), [](const Group& l, const Group& r) { return l.size() > r.size(); });
+    return groups;
+}
+
+/// Errors: what makes the largest group no stack.
+Status check_stack(const std::vector<Group>& groups, const std::string& path) {
     if (groups.empty()) return input_error("{}: holds no layer images, PNG files whose names end with a number", path);
-    auto& largest = std::max_element(groups.begin(), groups.end(), [](const auto& l, const auto& r) {
-                        return l.second.size() < r.second.size();
-                    })->second;
-    std::sort(largest.begin(), largest.end(),
-              [](const StackImage& l, const StackImage& r) { return l.number < r.number; });
+    const Group& largest = groups.front();
     if (largest.front().number > 1)
         return input_error("{}: the first image is {}, one with 0 or 1 is needed", path, largest.front().name);
     for (std::size_t i = 1; i < largest.size(); ++i) {
@@ -58,7 +69,11 @@ Result<std::vector<StackImage>> choose(const std::vector<std::string>& names, co
             return input_error("{}: {} follows {}: numbers must rise by one", path, largest[i].name,
                                largest[i - 1].name);
     }
-    return std::move(largest);
+    return {};
+}
+
+std::string text_of(const Group& group) {
+    return fmt::format("{} images {} to {}", group.size(), group.front().name, group.back().name);
 }
 
 Result<std::vector<std::string>> names_in(const fs::path& path, const ZipReader* zip) {
@@ -85,6 +100,7 @@ struct ImageStack::State {
     fs::path path;
     std::optional<ZipReader> zip;
     std::vector<StackImage> entries;
+    std::string left_out;
     PngSize size;
     std::optional<double> layer_um, first_layer_um;
     std::optional<PixelSize> pixel;
@@ -93,6 +109,11 @@ struct ImageStack::State {
         return zip ? zip->read(name, most) : read_file(path / name, most);
     }
     [[nodiscard]] Result<std::string> bytes(std::size_t i) const { return read(entries[i].name, max_image_bytes); }
+    [[nodiscard]] Result<PngSize> size_of(const std::string& name) const {
+        const auto bytes = read(name, max_image_bytes);
+        if (!bytes) return tl::unexpected(bytes.error());
+        return any_png_size(*bytes, fmt::format("{}: {}", path.string(), name));
+    }
 };
 
 ImageStack::ImageStack(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -110,9 +131,9 @@ Result<ImageStack> ImageStack::open(const fs::path& path) {
     }
     const auto names = names_in(path, state->zip ? &*state->zip : nullptr);
     if (!names) return tl::unexpected(names.error());
-    auto entries = choose(*names, path.string());
-    if (!entries) return tl::unexpected(entries.error());
-    state->entries = std::move(*entries);
+    std::vector<Group> groups = groups_of(*names);
+    if (Status status = check_stack(groups, path.string()); !status) return tl::unexpected(status.error());
+    state->entries = std::move(groups.front());
     const SideText side_text = [&](const std::string& name) { return state->read(name, max_text_bytes); };
     const auto layer_um = stated_layer_um(*names, side_text);
     if (!layer_um) return input_error("{}: {}", path.string(), layer_um.error().message);
@@ -123,11 +144,15 @@ Result<ImageStack> ImageStack::open(const fs::path& path) {
     const auto pixel = stated_pixel(*names, side_text);
     if (!pixel) return input_error("{}: {}", path.string(), pixel.error().message);
     state->pixel = *pixel;
-    const auto first = state->bytes(0);
-    if (!first) return tl::unexpected(first.error());
-    const auto size = any_png_size(*first, fmt::format("{}: {}", path.string(), state->entries[0].name));
+    const auto size = state->size_of(state->entries[0].name);
     if (!size) return tl::unexpected(size.error());
     state->size = *size;
+    if (groups.size() > 1 && groups[1].size() > 1) {
+        const auto other = state->size_of(groups[1].front().name);
+        if (other && other->width_px == size->width_px && other->height_px == size->height_px)
+            state->left_out = fmt::format("{}: the layers are the {}; the {}, which have the same size, are left out",
+                                          path.string(), text_of(state->entries), text_of(groups[1]));
+    }
     return ImageStack(std::move(state));
 }
 
@@ -153,6 +178,10 @@ std::optional<double> ImageStack::first_layer_um() const {
 
 std::optional<PixelSize> ImageStack::pixel() const {
     return state_->pixel;
+}
+
+const std::string& ImageStack::left_out() const {
+    return state_->left_out;
 }
 
 Result<slice::Image> ImageStack::image(int layer) const {

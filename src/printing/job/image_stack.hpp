@@ -14,7 +14,7 @@ namespace pliant::job {
 
 /// The PNG images of a folder or a zip file (.sl1, .nanodlp, .cws, any .zip) whose names end with a number: layer
 /// images in the order of that number, which may begin at 0 or 1. Previews and thumbnails are ignored. Of several
-/// groups of names, such as "cone_0001.png", the largest is the stack. Not thread-safe.
+/// groups of names, such as "cone_0001.png", the largest is the stack; see left_out(). Not thread-safe.
 class ImageStack {
 public:
     /// Errors: no such images, a missing or duplicate number, images of different sizes, an invalid layer height
@@ -33,6 +33,9 @@ public:
     [[nodiscard]] std::optional<double> first_layer_um() const;
     /// Likewise.
     [[nodiscard]] std::optional<PixelSize> pixel() const;
+    /// Names the images of another group that could be layers too: those of the next largest one, if they have the same
+    /// size. "": none.
+    [[nodiscard]] const std::string& left_out() const;
     /// The image as grey, whatever kind of PNG the file holds. Errors: what libpng rejects.
     [[nodiscard]] Result<slice::Image> image(int layer) const;
 

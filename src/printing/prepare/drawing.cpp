@@ -103,6 +103,7 @@ Status add_stack(const std::filesystem::path& path, const std::string& material,
         return input_error("{}: material \"{}\" has layer images already", path.string(), material);
     Result<job::ImageStack> stack = job::ImageStack::open(path);
     if (!stack) return tl::unexpected(stack.error());
+    if (!stack->left_out().empty()) drawing.warnings.push_back(stack->left_out());
     drawing.stacks.push_back({material, std::move(*stack)});
     add_resin(drawing, material, material);
     return {};
