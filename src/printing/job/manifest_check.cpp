@@ -44,6 +44,9 @@ Status check_material(const Material& m, std::size_t i, std::string_view where) 
         return input_error("{}: materials[{}].bottom_layers: {} must be 0 or more", where, i, *m.bottom_layers);
     if (!m.colour.empty() && !is_colour(m.colour))
         return input_error("{}: materials[{}].colour: '{}' must be like #rrggbb", where, i, m.colour);
+    if (m.parts.size() == 1)
+        return input_error("{}: materials[{}].parts: has one entry; it lists two or more materials, or is left out",
+                           where, i);
     for (std::size_t p = 0; p < m.parts.size(); ++p) {
         const MaterialPart& part = m.parts[p];
         if (part.name.empty() || !is_amount(part.model_volume_mm3) || !is_amount(part.model_area_mm2))

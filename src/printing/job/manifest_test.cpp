@@ -108,6 +108,9 @@ TEST_CASE("an inconsistent manifest is refused") {
     m.materials[0].name = "";
     refuse(m, "materials[0].name");
     m = example();
+    m.materials[0].parts = {{"a", 12.5, 30.25}};
+    refuse(m, "materials[0].parts: has one entry; it lists two or more materials");
+    m = example();
     m.materials[1].exposure_s = -1;
     refuse(m, "materials[1].exposure_s");
     m = example();
