@@ -207,10 +207,7 @@ void note_wide_tips(const Order& order, double tip_um, double pixel_um, std::vec
 
 Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,
                    Progress& progress) {
-    if (order.hollow.empty()) {
-        if (!order.drain.empty()) return input_error("--drain: needs --hollow");
-        return {};
-    }
+    if (order.hollow.empty()) return {};
     slice::HollowSettings hollow;
     Status status =
         read_lengths({{"--hollow", &order.hollow, &hollow.wall_um}, {"--drain", &order.drain, &hollow.drain_um}});
@@ -227,16 +224,22 @@ Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& draw
 
 }  // namespace
 
-Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,
-               Progress& progress) {
-    if (!drawing.stacks.empty()) return {};
-    const bool supported = !order.support.empty();
+Status check_companions(const Order& order) {
     for (const auto& [option, text] :
          {std::pair{"--raft", &order.raft}, std::pair{"--lift", &order.lift},
           std::pair{"--support-angle", &order.support_angle}, std::pair{"--support-spacing", &order.support_spacing},
           std::pair{"--support-tip", &order.support_tip}, std::pair{"--support-pillar", &order.support_pillar}}) {
-        if (!supported && !text->empty()) return input_error("{}: needs --support MATERIAL", option);
+        if (order.support.empty() && !text->empty()) return input_error("{}: needs --support MATERIAL", option);
     }
+    if (order.hollow.empty() && !order.drain.empty()) return input_error("--drain: needs --hollow");
+    return {};
+}
+
+Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,
+               Progress& progress) {
+    if (!drawing.stacks.empty()) return {};
+    if (Status status = check_companions(order); !status) return status;
+    const bool supported = !order.support.empty();
     std::vector<slice::SupportTouch> touches;
     if (Status status = add_paint(order, drawing, touches); !status) return status;
     if (Status status = place(order, settings, drawing); !status) return status;

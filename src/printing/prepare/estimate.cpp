@@ -15,6 +15,7 @@ namespace {
 
 /// Removes what an estimate does not include. A length or angle that cannot be read is an error all the same.
 Status leave_out_slow(Order& order) {
+    if (Status status = check_companions(order); !status) return status;
     for (const auto& [option, text] : {std::pair{"--support-spacing", &order.support_spacing},
                                        {"--support-tip", &order.support_tip},
                                        {"--support-pillar", &order.support_pillar},

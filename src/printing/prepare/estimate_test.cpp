@@ -84,6 +84,20 @@ TEST_CASE("air that is cut out of a body is in no estimate and in no job") {
     CHECK(guess->vats[0].resin_ml < 0.9 * whole->vats[0].resin_ml);
 }
 
+TEST_CASE("an order that lacks the support or the hollow that an option belongs to has no estimate") {
+    const auto problem = [](const std::function<void(Order&)>& change) {
+        Order order;
+        order.inputs = {"blocks"};
+        order.layer = "100 um";
+        change(order);
+        const auto guess = estimate(order, tower().printer, blocks());
+        return guess ? std::string() : guess.error().message;
+    };
+    CHECK(problem([](Order& o) { o.raft = "1 mm"; }) == "--raft: needs --support MATERIAL");
+    CHECK(problem([](Order& o) { o.drain = "1 mm"; }) == "--drain: needs --hollow");
+    CHECK(problem([](Order& o) { o.hollow = o.drain = "1 mm"; }).empty());
+}
+
 TEST_CASE("the estimate of a real robot is close to the plan of its sliced job") {
     const pliant::test::Folder folder;
     const PrinterFile printer = tower();
