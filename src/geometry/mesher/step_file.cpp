@@ -26,6 +26,18 @@ Result<StepContent> solids_of(const std::string& file, double scale) {
     return unpacked<StepContent>(answer);
 }
 
+/// A part that the file does not hold.
+tl::unexpected<Error> no_such_part(const std::string& file, const std::string& part,
+                                   const std::vector<std::string>& names) {
+    std::vector<std::string> known;
+    for (const std::string& name : names) {
+        if (!name.empty() && std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+    }
+    return input_error("{}: has no solid \"{}\"; {}", file, part,
+                       known.empty() ? "its solids have no names: leave out the part, and all are taken"
+                                     : "it has " + join_names(known));
+}
+
 }  // namespace
 
 bool looks_like_step(std::string_view bytes) {
@@ -57,8 +69,7 @@ Result<Solid> read_step(const std::filesystem::path& path, const std::string& pa
         step.numbers.push_back(static_cast<int>(i));
         append(surface, content->surfaces[i]);
     }
-    if (step.numbers.empty())
-        return input_error("{}: has no solid \"{}\"; it has {}", path.string(), part, join_names(content->names));
+    if (step.numbers.empty()) return no_such_part(path.string(), part, content->names);
     step.surface = std::make_shared<const TriangleTree>(std::move(surface));
     return std::make_shared<const SolidNode>(SolidNode{std::move(step)});
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <regex>
 
 #include "base/core/files.hpp"
 #include "base/core/near.hpp"
@@ -67,6 +68,26 @@ TEST_CASE("solids of a STEP file: exact volumes, in the caller's unit, one or al
     const Result<Solid> first = read_step(path, bare, 1);
     REQUIRE_MESSAGE(first, (first ? "" : first.error().message));
     CHECK(volume_of(*first) == near(2000, {.relative = 1e-9}));
+    const Result<Solid> in_cm = read_step(path, bare, 0.1);  // a solid has its name in any unit
+    REQUIRE_MESSAGE(in_cm, (in_cm ? "" : in_cm.error().message));
+    CHECK(volume_of(*in_cm) == near(2, {.relative = 1e-9}));
+    CHECK(bounds(*in_cm).high.x == near(2, {.relative = 1e-12}));
+    CHECK(contains(*in_cm, {1.9, 1.9, 0.4}));
+    CHECK_FALSE(contains(*in_cm, {1.9, 1.9, 0.6}));
+}
+
+TEST_CASE("a part is asked of a STEP file whose solids have no names: the message says so") {
+    const pliant::test::Folder folder("step");
+    const fs::path path = written(folder);
+    const Result<std::string> whole = read_file(path);
+    REQUIRE(whole);
+    const std::regex name("'Open CASCADE STEP translator [^']*'");
+    REQUIRE(write_file(path, std::regex_replace(*whole, name, "''")));
+    const Result<Solid> none = read_step(path, "lid", 1);
+    REQUIRE_FALSE(none);
+    INFO(none.error().message);
+    CHECK(none.error().message.ends_with(
+        "drawing.step: has no solid \"lid\"; its solids have no names: leave out the part, and all are taken"));
 }
 
 TEST_CASE("a STEP body is joined to bodies it touches, and its curved faces stay curved") {

@@ -22,7 +22,8 @@ inline constexpr int all_ways = 8;
 /// How far the volume may be off that Open CASCADE gives a solid.
 [[nodiscard]] double volume_slack(double volume);
 
-/// The solids of a STEP file, in file order. Open CASCADE converts the file's unit to millimetres.
+/// The solids of a STEP file, in file order. Open CASCADE converts the file's unit to millimetres; where
+/// `scale` is not 1, the solids lose their names.
 [[nodiscard]] gmsh::Entities import_solids(const std::string& file, double scale);
 
 [[nodiscard]] double volume_of(const gmsh::Entities& volumes);

@@ -158,9 +158,10 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance, int way) {
 
 namespace {
 
-/// The solids of a STEP file, with meshed surfaces.
-Entities import_surfaces(const std::string& file, double scale) {
-    Entities solids = import_solids(file, scale);
+/// The solids of a STEP file in millimetres, with meshed surfaces. They are not scaled: that makes new shapes, without
+/// the names of the old ones.
+Entities import_surfaces(const std::string& file) {
+    Entities solids = import_solids(file, 1);
     occ::synchronize();
     gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 32);
     if (!solids.empty()) gmsh::model::mesh::generate(2);
@@ -171,13 +172,13 @@ Entities import_surfaces(const std::string& file, double scale) {
 
 Result<StepContent> read_step(const std::string& file, double scale) {
     return in_session("reading", [&]() -> Result<StepContent> {
-        const Entities solids = import_surfaces(file, scale);
+        const Entities solids = import_surfaces(file);
         if (solids.empty()) return input_error("holds no solid");
         StepContent content;
         for (const auto& solid : solids) {
             const std::string path = gmsh::model::get_entity_name(3, solid.second);
             content.names.push_back(path.substr(path.rfind('/') + 1));
-            content.surfaces.push_back(collect_surface({solid}));
+            content.surfaces.push_back(scaled(collect_surface({solid}), scale));
         }
         return content;
     });
