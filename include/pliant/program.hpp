@@ -32,7 +32,8 @@ struct RunOptions {
     /// CSV of measured marker positions, with the columns of markers.csv, for comparison with the simulated ones.
     std::filesystem::path measured{};
     /// Folder in which the run is saved as it proceeds, so that it can be resumed; empty: the run is not saved. An
-    /// older checkpoint there is replaced, unless the run resumes from it. Nothing else may work on it meanwhile.
+    /// older checkpoint there is replaced, unless the run resumes from it or it is of the same run, unfinished. Nothing
+    /// else may work on it meanwhile.
     std::filesystem::path checkpoint{};
     /// Steps between checkpoints, not negative; 0: a checkpoint after every step or, with `resume`, as often as before.
     /// A run that stops early or is cancelled saves nothing more: the steps since the last checkpoint are solved again
@@ -108,7 +109,8 @@ private:
 /// Runs the robot's program from rest, or from a checkpoint. A program that stops early, is cancelled, or can no longer
 /// write its checkpoint is not a Failure: the result says so and holds the steps up to then.
 /// @throws Failure if the measured markers cannot be read or are invalid, `checkpoint_every` is negative, no folder is
-/// named for a checkpoint that is asked for, or the checkpoint cannot be made or resumed, as one that is in use.
+/// named for a checkpoint that is asked for, or the checkpoint cannot be made or resumed, as one that is in use, or
+/// would replace that of the same run, unfinished.
 PLIANT_API ProgramResult run(const Model& model, const RunOptions& options = {}, const Watch& watch = {});
 
 }  // namespace pliant

@@ -438,7 +438,8 @@ class Model:
         Args:
             on_step: called with each :class:`ProgramStep` as soon as it is solved, the rest state first.
             measured: CSV of measured marker positions, for comparison with the simulated ones.
-            checkpoint: folder in which the run is saved as it proceeds, so that it can be resumed.
+            checkpoint: folder in which the run is saved as it proceeds, so that it can be resumed. What is there of
+                the same run, unfinished, is not replaced: resume it, or remove the folder.
             checkpoint_every: steps between checkpoints; 0: after each step, or with `resume` as in the checkpoint.
             resume: resumes from the checkpoint.
             progress: called with (stage, share) some times a second; False cancels.

@@ -71,6 +71,12 @@ std::uintmax_t kept(const fs::path& results) {
     return none ? 0 : size;
 }
 
+/// Waits until more than `bytes` are kept, for 20 s at most.
+void wait_beyond(const fs::path& results, std::uintmax_t bytes) {
+    for (int wait = 0; wait < 20000 && kept(results) <= bytes; ++wait)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
 /// The whole file, without the column of wall times.
 std::string table(const fs::path& file) {
     std::ifstream in(file);
@@ -111,8 +117,7 @@ TEST_CASE("a run that is killed and resumed ten times ends with the same results
         const pid_t process = started(robot, pieces, options);
         // Kills it once it has advanced, at a random moment within the next steps.
         const std::uintmax_t before = kept(pieces);
-        for (int wait = 0; wait < 20000 && kept(pieces) <= before; ++wait)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        wait_beyond(pieces, before);
         std::this_thread::sleep_for(std::chrono::milliseconds(3 * k));
         ::kill(process, SIGKILL);
         if (exit_status(process) == -SIGKILL) ++killed;
@@ -136,10 +141,16 @@ TEST_CASE("resuming without a checkpoint, or from one of another robot, is refus
     REQUIRE(write_file(robot, bar));
     CHECK(exit_status(started(robot, results, {"--resume"})) == 2);
     const pid_t process = started(robot, results, {"--checkpoint-every", "1"});
-    for (int wait = 0; wait < 20000 && kept(results) == 0; ++wait)
+    wait_beyond(results, 0);
+    const fs::path state = results.string() + ".checkpoint/state";
+    const std::string first = read_file(state).value();  // perhaps the rest state alone, which is nothing to lose
+    for (int wait = 0; wait < 20000 && read_file(state).value() == first; ++wait)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ::kill(process, SIGKILL);
     CHECK(exit_status(process) == -SIGKILL);
+    const std::string last = read_file(state).value();
+    CHECK(exit_status(started(robot, results, {"--checkpoint-every", "1"})) == 2);  // --resume is forgotten
+    CHECK(read_file(state).value() == last);
     CHECK(exit_status(started(robot, results, {"--resume", "--set", "program.tolerance=1e-5"})) == 2);
     REQUIRE(write_file(robot, bar + "\n# changed\n"));
     CHECK(exit_status(started(robot, results, {"--resume"})) == 2);
@@ -151,8 +162,7 @@ TEST_CASE("a second run into the folder of one at work is refused, and the first
     REQUIRE(write_file(robot, bar));
     CHECK(exit_status(started(robot, whole, {})) == 0);
     const pid_t first = started(robot, results, {"--checkpoint-every", "1"});
-    for (int wait = 0; wait < 20000 && kept(results) == 0; ++wait)
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    wait_beyond(results, 0);
     {
         const Halted halted(first);
         CHECK(exit_status(started(robot, results, {"--checkpoint-every", "1", "--set", "program.steps=4"})) == 2);

@@ -54,6 +54,19 @@ struct Kept {
     std::optional<sim::RunState> begin;
 };
 
+/// A run that was interrupted may have taken hours: one forgotten option does not throw it away. What cannot be resumed
+/// is left to Checkpoint::create().
+void refuse_to_replace_unfinished(const Model::Data& model, const std::filesystem::path& folder) {
+    const sim::Program& program = model.scene.robot.program;
+    const auto kept = sim::Checkpoint::open(folder, model.robot->origin(), model.scene.model, program);
+    if (!kept || kept->run.step == 0 || kept->run.step >= program.steps) return;
+    throw Failure(Failure::Kind::input,
+                  fmt::format("{}: holds this run up to step {} of {}, which a new run would delete; resume it, or "
+                              "remove the folder",
+                              folder.string(), kept->run.step, program.steps),
+                  folder.string());
+}
+
 Kept open_checkpoint(const Model::Data& model, const RunOptions& options) {
     if (options.checkpoint_every < 0) throw Failure(Failure::Kind::input, "checkpoint_every is negative");
     if (options.checkpoint.empty()) {
@@ -62,6 +75,7 @@ Kept open_checkpoint(const Model::Data& model, const RunOptions& options) {
         return {};
     }
     if (!options.resume) {
+        refuse_to_replace_unfinished(model, options.checkpoint);
         const int every = std::max(options.checkpoint_every, 1);
         return {library::value_of(sim::Checkpoint::create(options.checkpoint, model.robot->origin(), every)),
                 std::nullopt};

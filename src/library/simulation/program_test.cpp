@@ -52,6 +52,11 @@ TEST_CASE("a cancelled run resumes from its checkpoint to the same steps") {
     const ProgramResult first = run(model, options, until(3, reached));
     CHECK_FALSE(first.converged());
     CHECK(first.step_count() == 4);
+    CHECK_THROWS_WITH_AS((void)run(model, options),
+                         ((folder / "kept").string() + ": holds this run up to step 3 of 6, which a new run would "
+                                                       "delete; resume it, or remove the folder")
+                             .c_str(),
+                         Failure);
     options.resume = true;
     options.on_resume = [&](int step) { resumed = step; };
     const ProgramResult second = run(Model(bar(six_steps)), options);
@@ -60,6 +65,9 @@ TEST_CASE("a cancelled run resumes from its checkpoint to the same steps") {
     REQUIRE(second.step_count() == 7);
     for (std::size_t k = 0; k < 7; ++k) CHECK(second.step(k).positions == whole.step(k).positions);
     CHECK(fs::exists(folder / "kept"));
+    options.resume = false;
+    CHECK(run(model, options).converged());  // replaces what was finished
+    options.resume = true;
     second.remove_checkpoint();
     CHECK_FALSE(fs::exists(folder / "kept"));
     CHECK_THROWS_AS((void)run(model, options), Failure);
