@@ -264,6 +264,43 @@ TEST_CASE("a fluid with a level brakes also while no gravity acts") {
     CHECK(way("level = 0\n") == near(way(""), {.relative = 1e-9}));
 }
 
+TEST_CASE("half a block on its plane of symmetry drifts as the whole one: no skin friction on the cut") {
+    const sim::Trajectory half = run_text(R"(
+name = "half"
+length_unit = "mm"
+[material.rubber]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0.3
+density = "1000 kg/m^3"
+[[body]]
+name = "block"
+material = "rubber"
+geometry = { box = [[0, 0, 0], [20, 10, 20]] }
+[mesh]
+size = "10 mm"
+order = 1
+[[fixed]]
+name = "symmetry"
+plane = { point = [0, 0, 0], normal = [0, 1, 0] }
+directions = "normal"
+[fluid]
+density = "1000 kg/m^3"
+drag_tangential = 0.5
+current = [1, 0, 0]
+[[marker]]
+name = "middle"
+point = [10, 0, 10]
+[program]
+duration = "0.1 s"
+time_step = "1 ms"
+)");
+    REQUIRE(half.converged);
+    const double drift = half.steps.back().markers[0].position_m.x - half.steps.front().markers[0].position_m.x;
+    // m v' = rho/2 c A (U - v)^2 with A that of the four sides along the current: x = U t - ln(1 + k U t)/k.
+    const double k = 0.5 * 1000 * 0.5 * 1.6e-3 / 8e-3, t = 0.1;
+    CHECK(drift == near(t - std::log(1 + k * t) / k, {.relative = 0.02}));
+}
+
 TEST_CASE("a fluid at rest never adds energy to a soft body, with large steps and both integrators") {
     for (const char* integrator : {"bdf2", "energy-conserving"}) {
         for (const double step : {0.002, 0.02}) {

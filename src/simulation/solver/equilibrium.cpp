@@ -12,6 +12,7 @@
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/drives.hpp"
 #include "simulation/solver/residual.hpp"
+#include "simulation/solver/wetted_skin.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -160,7 +161,7 @@ void Equilibrium::add_fluid() {
     const Description& d = model_->description();
     if (!d.fluid) return;
     contact::Surface skin;
-    skin.triangles = d.fluid->skin;
+    skin.triangles = wetted(d.fluid->skin, view(std::as_const(rest_)), model_->held());
     fluid_.emplace(*d.fluid, model_->object_points().with_objects(std::move(skin), d.objects).triangles);
 }
 
