@@ -171,6 +171,8 @@ TEST_CASE("what depends on something that cannot be read is not judged") {
     const std::string ranged =
         cable + "range = [0.8, 1]\n" + marker + "[[goal]]\nname = \"reach\"\nmarker = \"tip\"\ntimes = [0.5, 1]\n";
     CHECK(only(neo, ranged + "path = \"none.csv\"\n") == "goal[0].path: there is no file none.csv");
+    CHECK(only(neo, ranged + "path = \"/\"\n") == "goal[0].path: / is a folder, a file is needed");
+    CHECK(only(neo, ranged + "path = \"/dev/null\"\n") == "goal[0].path: /dev/null is not a regular file");
     CHECK(only(neo, ranged + "path = []\n") == "goal[0].path: holds no point");
     CHECK(only(neo, "[fluid]\ndensity = \"1 g/cm^3\"\nlevel = 0\n[program]\ngravity = 9.81\n") ==
           "program.gravity: needs three finite numbers [x, y, z]");

@@ -28,7 +28,13 @@ std::filesystem::path need_file(Reader& reader, std::string_view key, const std:
     std::filesystem::path path(file);
     if (!path.is_absolute()) path = context.robot.file.parent_path() / path;
     std::error_code code;
-    if (!std::filesystem::is_regular_file(path, code)) reader.problem(key, "there is no file " + path.string());
+    const std::filesystem::file_status status = std::filesystem::status(path, code);
+    if (std::filesystem::is_directory(status))
+        reader.problem(key, path.string() + " is a folder, a file is needed");
+    else if (!std::filesystem::exists(status))
+        reader.problem(key, "there is no file " + path.string());
+    else if (!std::filesystem::is_regular_file(status))
+        reader.problem(key, path.string() + " is not a regular file");
     return path;
 }
 
