@@ -184,6 +184,7 @@ struct ControlBench {
         ready.gcode = gcode;
         ready.images = halves::image;
         ready.materials = {"soft", "rigid"};
+        ready.exposures_s = {job.materials[0].exposure_s, job.materials[1].exposure_s};
         ready.layers = layers;
         ready.refills = refills;
         ready.journal = folder.path() / "halves.zip.journal";

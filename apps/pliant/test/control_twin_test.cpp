@@ -1026,6 +1026,24 @@ TEST_CASE("a changed exposure takes effect at the next layer and is kept across 
     }
 }
 
+TEST_CASE("a changed exposure changes that of bottom layers by the same factor, up to what the machine allows") {
+    for (const double seconds : {3.0, 20.0}) {
+        ControlBench b;
+        Operator person(b, lit_on_layer(0), [&] { CHECK(b.control->set_exposure(0, seconds)); });
+        b.start();
+        INFO(b.last_error());
+        REQUIRE(b.snapshot().finished);
+        CHECK(has_event(b, "log", "layers with another exposure keep their share"));
+        const auto& layers = b.twin->cured().layers();
+        REQUIRE(layers.size() == 5);
+        const auto lit = [&](std::size_t layer, std::size_t vat) { return layers[layer].vats[vat].lit[0].seconds; };
+        CHECK(lit(0, 0) == near(12, {.relative = 0.001}));
+        CHECK(lit(1, 0) == near(seconds == 3 ? 14.4 : 60, {.relative = 0.001}));  // 12 s of 2.5 s; the limit is 60 s
+        CHECK(lit(2, 0) == near(seconds, {.relative = 0.001}));
+        CHECK(lit(1, 1) == near(12, {.relative = 0.001}));
+    }
+}
+
 TEST_CASE("the host reports every exposure that ended, broken off or complete") {
     ControlBench b(faulty(twin::Fault::Kind::door_open, 4, 40), "tower", 5, with_door);
     const OperatorAtOpenDoor person(b);

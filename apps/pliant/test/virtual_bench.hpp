@@ -18,7 +18,10 @@ inline host::PrintJob print_job(const job::Manifest& job, const std::string& gco
     ready.digest = host::job_digest(gcode);
     ready.gcode = gcode;
     ready.images = std::move(images);
-    for (const job::Material& material : job.materials) ready.materials.push_back(material.name);
+    for (const job::Material& material : job.materials) {
+        ready.materials.push_back(material.name);
+        ready.exposures_s.push_back(material.exposure_s);
+    }
     ready.layers = static_cast<int>(job.layers.size());
     return ready;
 }

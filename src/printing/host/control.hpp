@@ -62,8 +62,9 @@ public:
     /// needs a reset.
     void emergency_stop();
 
-    /// Sets the exposure of one material from the next layer on, in seconds; recorded in the journal. Errors: a
-    /// material that the job does not have, a time that the machine does not allow.
+    /// Sets the exposure of one material in normal layers from the next layer on, in seconds; recorded in the journal.
+    /// Bottom layers and others with their own exposure change by the same factor, up to what the machine allows.
+    /// Errors: a material that the job does not have, a time that the machine does not allow.
     [[nodiscard]] Status set_exposure(int material, double seconds);
     /// Skips the exposures of a layer that has not begun; recorded in the journal.
     [[nodiscard]] Status skip_layer(int layer);

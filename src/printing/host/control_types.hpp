@@ -66,6 +66,9 @@ struct PrintJob {
     std::string gcode;
     ImageSource images;
     std::vector<std::string> materials;  ///< names of the materials
+    /// Of a normal layer, by material: a change of it changes all other exposures of the material by the same factor.
+    /// Where it is missing, all become alike.
+    std::vector<double> exposures_s;
     int layers = 0;
     std::vector<Refill> refills;    ///< in order of layers
     std::string vats;               ///< what each slot must hold, for people; recorded in the journal

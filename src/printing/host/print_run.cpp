@@ -169,12 +169,17 @@ Result<Ending> PrintRun::steps_from(std::size_t first) {
 
 // Exposures.
 
+/// A changed exposure is that of a normal layer. Bottom layers, transition layers and layers of other heights keep
+/// their share of it: with the time of a normal layer they would not hold the part.
 double PrintRun::exposure_s(const machine::Expose& light) const {
+    const auto index = static_cast<std::size_t>(light.material);
+    const double normal_s = index < run_.job.exposures_s.size() ? run_.job.exposures_s[index] : light.seconds;
     double seconds = light.seconds;
     for (const ChangeFact& change : facts_.changes) {
-        if (change.material == light.material && light.layer >= change.from_layer) seconds = change.seconds;
+        if (change.material == light.material && light.layer >= change.from_layer)
+            seconds = light.seconds / normal_s * change.seconds;
     }
-    return seconds;
+    return std::min(seconds, printer_.limits.exposure_s);
 }
 
 bool PrintRun::skipped(int layer) const {
@@ -371,7 +376,9 @@ Status PrintRun::keep_changes() {
             s.exposures_s.resize(run_.job.materials.size());
             s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
         });
-        run_.desk.event("log", fmt::format("from {} on, {} is exposed for {:g} s", layer_text(change.from_layer),
+        run_.desk.event("log", fmt::format("from {} on, {} is exposed for {:g} s; layers with another exposure keep "
+                                           "their share",
+                                           layer_text(change.from_layer),
                                            material_text(run_.job.materials, change.material), change.seconds));
     }
     for (const int layer : run_.desk.take_skips()) {

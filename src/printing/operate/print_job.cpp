@@ -47,7 +47,10 @@ Result<ReadyJob> load_job(const std::filesystem::path& path) {
     job.digest = host::job_digest(*bytes);
     job.gcode = std::move(proved->gcode);
     job.images = [archive](int layer, int material) { return image_of(*archive, layer, material); };
-    for (const job::Material& material : manifest.materials) job.materials.push_back(material.name);
+    for (const job::Material& material : manifest.materials) {
+        job.materials.push_back(material.name);
+        job.exposures_s.push_back(material.exposure_s);
+    }
     job.layers = static_cast<int>(manifest.layers.size());
     job.refills = refills_of(proved->plan);
     for (const std::string& line : plan::vat_lines(proved->plan)) job.vats += (job.vats.empty() ? "" : "; ") + line;

@@ -12,6 +12,7 @@ export function Exposure() {
   return (
     <details class="block fold" data-testid="light">
       <summary>Adjust exposure</summary>
+      <p class="quiet">Of a normal layer, from the next layer on. Bottom layers and others with their own exposure change by the same factor.</p>
       {i.materials.map(({ name, colour, exposure_s }, m) => (
         <label class="field-row" key={name}>
           <span>
