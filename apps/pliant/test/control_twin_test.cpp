@@ -11,6 +11,7 @@
 #include "base/core/files.hpp"
 #include "base/core/near.hpp"
 #include "control_bench.hpp"
+#include "printing/host/control_api.hpp"
 
 using namespace pliant;
 using namespace pliant::app;
@@ -1257,6 +1258,9 @@ TEST_CASE("a second host on the same job is refused, and so is starting an inter
     b.must_die(400);
     CHECK(person.acted);
     b.new_host();
+    const host::ApiAnswer asked = host::handle_api(*b.control, "POST", "/api/job", R"({"command": "start"})");
+    CHECK(asked.status == 409);
+    CHECK(asked.json.find("was interrupted: resume or cancel it first") != std::string::npos);
     b.start();
     CHECK(b.last_error().find("--resume") != std::string::npos);
     CHECK(b.snapshot().state == State::offline);

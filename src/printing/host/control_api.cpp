@@ -215,7 +215,13 @@ ApiAnswer start_job(const Request& r) {
     options.resume = r.flag("resume");
     options.assume.lit_s = r.number("assumeLit");
     options.assume.vats_untouched = r.flag("assumeVatsUntouched");
-    if (r.control.snapshot().job.empty()) return refusal(409, "no job is loaded");
+    const Snapshot now = r.control.snapshot();
+    if (now.job.empty()) return refusal(409, "no job is loaded");
+    const bool waits = !is_printing(now.state);  // a print that runs has a refusal of its own
+    if (waits && options.resume && !now.can_resume)
+        return refusal(409, "there is no interrupted print of this job that can be resumed");
+    if (waits && !options.resume && now.can_resume)
+        return refusal(409, "the print of this job was interrupted: resume or cancel it first");
     return answer(r.control.start(options));
 }
 

@@ -125,6 +125,10 @@ TEST_CASE("a command that the state does not allow is a conflict (409), with the
         CHECK_FALSE(json::parse(answer.json)["error"].get<std::string>().empty());
     }
     CHECK(b.post("/api/printer/axes", {{"command", "home"}}).status == 409);
+    b.load();
+    const ApiAnswer resumed = b.post("/api/job", {{"command", "start"}, {"resume", true}});
+    CHECK(resumed.status == 409);
+    CHECK(resumed.json.find("there is no interrupted print of this job that can be resumed") != std::string::npos);
 }
 
 TEST_CASE("connect, look, start: the answers follow OctoPrint's API") {
