@@ -205,6 +205,28 @@ void note_wide_tips(const Order& order, double tip_um, double pixel_um, std::vec
                                    order.support_tip, 2 * pixel_um / 1000));
 }
 
+void note_touching_pillars(const Order& order, const slice::SupportSettings& wanted,
+                           std::vector<std::string>& warnings) {
+    if (order.support_spacing.empty() || wanted.spacing_um > wanted.pillar_um) return;
+    warnings.push_back(
+        fmt::format("--support-spacing {}: pillars of {:g} mm touch each other and may close cavities; "
+                    "wider spacing or thinner pillars stand apart",
+                    order.support_spacing, wanted.pillar_um / 1000));
+}
+
+void note_thin_walls(const Order& order, double wall_um, const slice::Settings& slicing,
+                     std::vector<std::string>& warnings) {
+    const double pixel_um = slicing.raster.pixel_um;
+    if (wall_um < 2 * pixel_um)
+        warnings.push_back(fmt::format("--hollow {}: is less than two pixels of {:g} um; walls become thicker",
+                                       order.hollow, pixel_um));
+    else if (wall_um < 2 * slicing.layer_um)
+        warnings.push_back(
+            fmt::format("--hollow {}: is less than two layers of {} um; floors and ceilings become "
+                        "thicker",
+                        order.hollow, slicing.layer_um));
+}
+
 Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,
                    Progress& progress) {
     if (order.hollow.empty()) return {};
@@ -212,6 +234,7 @@ Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& draw
     Status status =
         read_lengths({{"--hollow", &order.hollow, &hollow.wall_um}, {"--drain", &order.drain, &hollow.drain_um}});
     if (!status) return status;
+    note_thin_walls(order, hollow.wall_um, settings.slicing, drawing.warnings);
     auto made = slice::hollow_out(drawing.bodies, settings.slicing, hollow, progress);
     if (!made) return tl::unexpected(made.error());
     settings.slicing.removed = made->removed;
@@ -258,6 +281,7 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
     if (!supported) return {};
     if (Status status = check_raft(order, wanted.raft_um, settings.slicing.layers()); !status) return status;
     note_wide_tips(order, wanted.tip_um, settings.slicing.raster.pixel_um, drawing.warnings);
+    note_touching_pillars(order, wanted, drawing.warnings);
     auto supports = slice::make_supports(drawing.bodies, settings.slicing, wanted, progress);
     if (!supports) return tl::unexpected(supports.error());
     notes.push_back(fmt::format("supports: {}, {} of them on the part itself, {}, {:.1f} mm^3",

@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
@@ -330,6 +331,34 @@ TEST_CASE("--support-paint without --support, or with an invalid table, is refus
         o.support_paint_file = "mine.csv";
     });
     CHECK(text == "mine.csv:1: there is no column \"x (mm)\"");
+}
+
+TEST_CASE("pillars of supports that touch each other are a warning") {
+    const auto warned = [](const char* spacing) {
+        const Arranged a = table_with([&](Order& o) { o.support_spacing = spacing; });
+        return std::ranges::count(a.drawing.warnings,
+                                  fmt::format("--support-spacing {}: pillars of 1 mm touch each other and may close "
+                                              "cavities; wider spacing or thinner pillars stand apart",
+                                              spacing));
+    };
+    CHECK(warned("1 mm") == 1);
+    CHECK(warned("1.01 mm") == 0);
+}
+
+TEST_CASE("hollow walls of less than two pixels or layers are a warning") {
+    const auto warned = [](const char* wall, const char* layer) {
+        const Arranged a = done([&](Order& o) {
+            o.hollow = wall;
+            o.layer = layer;
+        });
+        const auto found =
+            std::ranges::find_if(a.drawing.warnings, [](const std::string& w) { return w.find("--hollow") == 0; });
+        return found == a.drawing.warnings.end() ? "" : *found;
+    };
+    CHECK(warned("0.2 mm", "100 um").empty());
+    CHECK(warned("0.15 mm", "50 um") == "--hollow 0.15 mm: is less than two pixels of 100 um; walls become thicker");
+    CHECK(warned("0.25 mm", "150 um") ==
+          "--hollow 0.25 mm: is less than two layers of 150 um; floors and ceilings become thicker");
 }
 
 TEST_CASE("a raft that no layer would show is an error, tips below two pixels a warning") {
