@@ -225,7 +225,10 @@ Projector read_projector(Reader r) {
     p.width_px = r.whole("width", 1, 32768);
     p.height_px = r.whole("height", 1, 32768);
     constexpr double parts = 1e6;  // of a micrometre; the remainder is rounding of "100 um" to metres
-    p.pixel_um = std::round(parts * positive(r, "pixel", Dimension::length, 1e6)) / parts;
+    p.pixel_um = std::round(parts * r.quantity("pixel", Dimension::length) * 1e6) / parts;
+    constexpr double least_um = 0.1, most_um = 10'000;
+    if (r.has("pixel") && !(p.pixel_um >= least_um && p.pixel_um <= most_um))
+        r.problem("pixel", "must be 0.1 um to 10 mm");
     p.mirror_x = r.boolean("mirror_x", false);
     p.mirror_y = r.boolean("mirror_y", false);
     read_alignment(r, p);

@@ -1,6 +1,7 @@
 #include "printing/machine/printer.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <string>
@@ -99,6 +100,9 @@ TEST_CASE("an invalid printer file gives a line with file, key and remedy") {
     CHECK(holds(message_with("home = \"max\"", "home = \"min\""), "clear of the vat"));
     CHECK(holds(message_with("\"1460 mm\"", "\"1400 mm\""), "the last slot"));
     CHECK(holds(message_with("travel = \"29.5 mm\"", "travel = \"120 mm\""), "less than the tower's clearance"));
+    for (const char* pixel : {"1e-9 um", "0 um", "-1 um", "10.1 mm"})
+        CHECK(holds(message_with("pixel = \"158.75 um\"", fmt::format("pixel = \"{}\"", pixel)),
+                    "projector.pixel: must be 0.1 um to 10 mm"));
     // 400 mm of travel less 304.8 mm of the tallest part.
     CHECK(holds(message_with("\nlift = \"5 mm\"", "\nlift = \"95.201 mm\""),
                 "platform.lift: must be at most 95.200 mm, so that a part as tall as build_height (304.800 mm) is "
