@@ -17,6 +17,7 @@ struct Discard {
 using Handle = std::unique_ptr<zip_t, Discard>;
 
 std::string text_of(int code) {
+    if (code == ZIP_ER_NOZIP) return "is no zip archive, or the end of it is missing: was it copied completely?";
     zip_error_t error;
     libzip().error_init_with_code(&error, code);
     std::string text = libzip().error_strerror(&error);

@@ -108,6 +108,13 @@ private:
 
 }  // namespace
 
+TEST_CASE("an archive that was cut off is told from a missing file") {
+    const File file;
+    const std::string whole = HandMadeArchive{}.zip();
+    CHECK(file.refused(whole.substr(0, whole.size() / 2)) ==
+          file.path.string() + ": is no zip archive, or the end of it is missing: was it copied completely?");
+}
+
 TEST_CASE("entries are read back as written, stored and deflated, empty and binary") {
     const File file;
     const std::string binary("\0\xFF\r\n\x1A", 5), repeated(100000, 'x'), name = "b\xC3\xA9/\xE6\x9F\x94.txt";
