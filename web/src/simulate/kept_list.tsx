@@ -15,9 +15,9 @@ export function KeptList() {
   return (
     <>
       {keptTexts.value.map((kept) => (
-        <div class="prompt" role="status" key={kept.opened} data-testid="kept-text">
+        <div class="prompt kept" role="status" key={kept.opened} data-testid="kept-text">
           <span>
-            The text of <b>{kept.title}</b> that was not applied is kept.{' '}
+            <b>The text of {kept.title} that was not applied is kept.</b>
             <button class="small" disabled={!mayDrive.value} onClick={() => openAgain(kept)} data-testid="kept-open">
               Open it again
             </button>{' '}
