@@ -6,6 +6,7 @@ Debian's libraries stay where they are. What is compiled is kept in build/wheel,
 
 import base64
 import hashlib
+import io
 import os
 import pathlib
 import shutil
@@ -100,12 +101,26 @@ def write_wheel(wheel, staging, info):
         archive.writestr(place, "\n".join(record + [place + ",,"]) + "\n")
 
 
+def sources():
+    """What is tracked; in a source archive, everything that it came with."""
+    if (ROOT / "PKG-INFO").exists():
+        made = ("build/", "out/")
+        paths = (path.relative_to(ROOT).as_posix() for path in sorted(ROOT.rglob("*")) if not path.is_dir())
+        return [path for path in paths
+                if path != "PKG-INFO" and not path.startswith(made) and "__pycache__" not in path]
+    listed = subprocess.run(["git", "ls-files", "-z"], check=True, cwd=ROOT, capture_output=True).stdout
+    return list(filter(None, listed.decode().split("\0")))
+
+
 def build_sdist(sdist_directory, config_settings=None):
-    """What is tracked, below one folder."""
+    """The sources and PKG-INFO, below one folder."""
     about = project()
     name = "%s-%s" % (about["name"], about["version"])
-    listed = subprocess.run(["git", "ls-files", "-z"], check=True, cwd=ROOT, capture_output=True).stdout
     with tarfile.open(os.path.join(sdist_directory, name + ".tar.gz"), "w:gz") as archive:
-        for path in filter(None, listed.decode().split("\0")):
+        for path in sources():
             archive.add(ROOT / path, name + "/" + path, recursive=False)
+        text = metadata().encode()
+        info = tarfile.TarInfo(name + "/PKG-INFO")
+        info.size, info.mode = len(text), 0o644
+        archive.addfile(info, io.BytesIO(text))
     return name + ".tar.gz"

@@ -446,6 +446,10 @@ TEST_CASE("errors are thrown with their kind, line and key") {
     CHECK(message({0, {{Drive::By::length, NAN}}, {}}) == "cable \"flexor\": driven by a number that is not finite");
     CHECK(message({0, {{Drive::By::tension, -1}}, {}}) ==
           "cable \"flexor\": a tension of -1 N is not possible: it must not be negative");
+    CHECK(message({0, {{Drive::By::length, 0}}, {}}) ==
+          "cable \"flexor\": a length of 0 m is not possible: it must be above 0; a shortening in metres is less than "
+          "the "
+          "cable's length");
     CHECK_THROWS_WITH_AS((void)stepper.state_from("nothing"), doctest::Contains("not a state that Pliant has written"),
                          Failure);
     const Model other(bar());

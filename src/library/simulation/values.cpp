@@ -34,7 +34,7 @@ sim::Drive drive_for(const Drive& drive, const std::string& name, bool cable) {
     if (!std::isfinite(drive.value)) wrong("driven by a number that is not finite");
     const bool of_cable = drive.by == By::length || drive.by == By::tension;
     if (of_cable != cable) wrong(cable ? "is driven by length or tension" : "is driven by volume, pressure or gas");
-    const bool positive = drive.by == By::volume || drive.by == By::gas;
+    const bool positive = drive.by != By::tension && drive.by != By::pressure;
     if (positive ? !(drive.value > 0) : cable && !(drive.value >= 0)) {
         const char* what = drive.by == By::length    ? "a length"
                            : drive.by == By::tension ? "a tension"
@@ -46,7 +46,7 @@ sim::Drive drive_for(const Drive& drive, const std::string& name, bool cable) {
                                                      : "J";
         wrong(fmt::format("{} of {:g} {} is not possible: it must {}{}", what, drive.value, unit,
                           positive ? "be above 0" : "not be negative",
-                          drive.by == By::length ? "; a shortening in metres is at most the cable's length" : ""));
+                          drive.by == By::length ? "; a shortening in metres is less than the cable's length" : ""));
     }
     if (drive.by == By::length || drive.by == By::volume) return {DriveKind::measure, drive.value};
     if (drive.by == By::gas) return {DriveKind::gas, drive.value};
