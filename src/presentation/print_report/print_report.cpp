@@ -16,6 +16,7 @@
 #include "presentation/report/assets.hpp"
 #include "presentation/report/html.hpp"
 #include "printing/host/control_types.hpp"
+#include "printing/host/journal_facts.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/plan/plan.hpp"
 #include "printing/plan/timeline.hpp"
@@ -344,6 +345,9 @@ Result<std::string> print_report(const std::filesystem::path& job, const std::fi
     if (!records) return tl::unexpected(records.error());
     const Result<PrintStory> story = story_of(records->records);
     if (!story) return tl::unexpected(story.error());
+    // A story can be told of records that mean something else, as those of a newer format.
+    if (const auto facts = host::facts_of(records->records); !facts)
+        return input_error("{}: {}", journal.string(), facts.error().message);
     if (!story->digest.empty() && story->digest != host::job_digest(*bytes))
         return input_error("{}: this journal is of another job, or {} has changed since", journal.string(),
                            job.filename().string());

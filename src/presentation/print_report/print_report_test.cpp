@@ -164,6 +164,15 @@ TEST_CASE("a print report is one page with pictures, exposures, faults and resin
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message ==
           journal.string() + ": this journal is of another job, or job.zip has changed since");
+    REQUIRE(write_file(
+        journal,
+        host::write_record(
+            1, "begin",
+            {{"job", "x"}, {"digest", host::job_digest(read_file(file).value())}, {"printer", "t"}, {"format", "7"}})));
+    const auto newer = print_report(file, journal, {});
+    REQUIRE_FALSE(newer);
+    CHECK(newer.error().message ==
+          journal.string() + ": journal record 1 (begin): format 7 is not known, this program writes 1");
 }
 
 TEST_CASE("a report compares like times: from the start of the first exposure to the end of the last") {
