@@ -11,7 +11,7 @@ Result<OpenJob> open_job(const std::filesystem::path& path) {
     Result<job::Archive> archive = job::Archive::open(path);
     if (!archive) return tl::unexpected(archive.error());
     const Result<std::string> text = archive->file("printer.toml");
-    if (!text) return input_error("{}: {}; slice the robot again with --printer", path.string(), text.error().message);
+    if (!text) return input_error("{}; slice the robot again with --printer", text.error().message);
     Result<machine::Printer> printer = machine::parse_printer(*text, path / "printer.toml");
     if (!printer) return tl::unexpected(printer.error());
     return OpenJob{std::move(*archive), std::move(*printer)};

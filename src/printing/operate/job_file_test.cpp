@@ -96,7 +96,8 @@ TEST_CASE("a job opens with its printer; a job without a printer gets a remedy")
     CHECK(holds(open_job(job.folder / "none.zip").error().message, "none.zip: no such file"));
     job.with_printer = false;
     job.write();
-    CHECK(holds(open_job(job.path).error().message, "slice the robot again with --printer"));
+    CHECK(open_job(job.path).error().message ==
+          job.path.string() + ": has no entry 'printer.toml'; slice the robot again with --printer");
 }
 
 TEST_CASE("a mask is read from the folder of the printer file, and from the job") {
