@@ -205,16 +205,16 @@ private:
         const std::vector<int>& layers = refills_[s];
         if (layers.empty()) return;
         constexpr std::size_t most_named = 8;
-        std::string named;
-        for (std::size_t i = 0; i < std::min(layers.size(), most_named); ++i) {
-            named += fmt::format("{}{}", i == 0 ? "" : ", ", layers[i] + 1);
-        }
-        if (layers.size() > most_named) named += fmt::format(" and {} more", layers.size() - most_named);
+        std::vector<std::string> named;
+        for (std::size_t i = 0; i < std::min(layers.size(), most_named); ++i)
+            named.push_back(std::to_string(layers[i] + 1));
+        if (layers.size() > most_named) named.push_back(fmt::format("{} more", layers.size() - most_named));
         const Supply& supply = supplies_[s];
         const int vat = supply.vats[supply.in_use];
         assignment_.warnings.push_back(
-            fmt::format("the vat of slot {} gives {} of \"{}\" at a time: refill it before layer {}",
-                        vat_at(printer_, vat).slot, ml_text(usable_ml(printer_, vat)), supply.resin, named));
+            fmt::format("the vat of slot {} gives {} of \"{}\" at a time: refill it before {} {}",
+                        vat_at(printer_, vat).slot, ml_text(usable_ml(printer_, vat)), supply.resin,
+                        layers.size() == 1 ? "layer" : "layers", join_names(named)));
     }
 
     const job::Manifest& job_;

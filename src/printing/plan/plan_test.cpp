@@ -1,7 +1,9 @@
 #include "printing/plan/plan.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/core/near.hpp"
@@ -308,6 +310,18 @@ TEST_CASE("what the part carries off counts in how long a vat lasts") {
     const Plan plan = planned(job, printer);
     CHECK(plan.refills_of(1) == std::vector<int>{3});
     CHECK(plan.vats.front().needed_ml == near(67.5, {.relative = 1e-12}));
+}
+
+TEST_CASE("a warning of several refills names each layer") {
+    machine::Printer printer = plan::test::tower();
+    job::Manifest job = plan::test::make_job(repeated({0}, 8), two);
+    for (job::Layer& layer : job.layers) layer.images[0].area_mm2 = 5e4;  // 2.5 ml
+    printer.vats[0].fill_ml = 71;
+    const Plan plan = planned(job, printer);
+    const std::vector<int> layers = plan.refills_of(1);
+    REQUIRE(layers.size() == 2);
+    const std::string end = fmt::format(": refill it before layers {} and {}", layers[0] + 1, layers[1] + 1);
+    CHECK(std::ranges::any_of(plan.warnings, [&](const std::string& warning) { return warning.ends_with(end); }));
 }
 
 TEST_CASE("no vat falls below its least while vats change in every layer") {
