@@ -1,5 +1,7 @@
 #include "studio/make/slice_robot.hpp"
 
+#include <string>
+
 #include "presentation/draw/colour.hpp"
 #include "presentation/scene/scene.hpp"
 #include "printing/prepare/estimate.hpp"
@@ -29,14 +31,23 @@ std::vector<std::string> colours_by_robot(const job::Manifest& manifest, const r
     return colours;
 }
 
+/// With the files beside the robot's named as in its project: a page knows no folders of this computer.
+Error by_project_names(Error error, const SliceOrder& wanted) {
+    if (!wanted.robot_file.has_parent_path()) return error;
+    const std::string folder = wanted.robot_file.parent_path().string() + "/";
+    for (std::size_t at = 0; (at = error.message.find(folder, at)) != std::string::npos;)
+        error.message.erase(at, folder.size());
+    return error;
+}
+
 }  // namespace
 
 Result<std::vector<std::string>> slice_robot(const SliceOrder& wanted, const std::filesystem::path& job,
                                              Progress& progress, JobUnderWay& seen) {
     const Result<robot::Robot> robot = robot::parse_robot(wanted.robot_text, wanted.robot_file);
-    if (!robot) return tl::unexpected(robot.error());
+    if (!robot) return tl::unexpected(by_project_names(robot.error(), wanted));
     Result<prepare::Drawing> drawing = prepare::drawing_of(*robot, progress);
-    if (!drawing) return tl::unexpected(drawing.error());
+    if (!drawing) return tl::unexpected(by_project_names(drawing.error(), wanted));
     seen.clear();
     const auto watch = [&](const job::Manifest& so_far, int count, const std::vector<job::EncodedImage>& images) {
         seen.add(so_far, count, images, colours_by_robot(so_far, *robot));
@@ -48,10 +59,10 @@ Result<std::vector<std::string>> slice_robot(const SliceOrder& wanted, const std
 
 Result<plan::Plan> estimate_robot(const SliceOrder& wanted) {
     Result<robot::Robot> robot = robot::parse_robot(wanted.robot_text, wanted.robot_file);
-    if (!robot) return tl::unexpected(robot.error());
+    if (!robot) return tl::unexpected(by_project_names(robot.error(), wanted));
     Progress silent;
     Result<prepare::Drawing> drawing = prepare::drawing_of(*robot, silent);
-    if (!drawing) return tl::unexpected(drawing.error());
+    if (!drawing) return tl::unexpected(by_project_names(drawing.error(), wanted));
     return prepare::estimate(wanted.order, wanted.printer.printer, std::move(*drawing));
 }
 
