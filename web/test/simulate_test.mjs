@@ -205,6 +205,14 @@ test('a new robot gets a name of its own, where the files that it names are foun
   await page.keyboard.press('Enter');
   await name.waitFor({ state: 'detached' });
   assert.equal(readFileSync(join(folder, 'mine.toml'), 'utf8'), 'robot = "block.toml"\n');
+
+  // One with a file goes on under another name, and the file stays as it is.
+  await page.getByRole('button', { name: 'Save under another name' }).click();
+  assert.equal(await name.inputValue(), 'mine_copy.toml');
+  await name.press('Enter');
+  await name.waitFor({ state: 'detached' });
+  await page.waitForFunction(() => window.pliant.documentState.value.name === 'mine_copy.toml');
+  assert.equal(readFileSync(join(folder, 'mine_copy.toml'), 'utf8'), 'robot = "block.toml"\n');
   assert.deepEqual(wrong.filter((w) => !/422/.test(w)), []);
 });
 

@@ -221,14 +221,15 @@ export function Editor() {
   const [saveAs, setSaveAs] = useState<string | null>(null);
   const d = documentState.value;
   const changed = text.value !== theirs.value;
-  const save = () => (d.name ? saveRobot() : setSaveAs(`${(scene.value?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`));
+  const askForName = () => setSaveAs(d.name ? d.name.replace(/(\.toml)?$/i, '_copy.toml') : `${(scene.value?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`);
+  const canBuildAgain = !changed && problems.value.length > 0;
   return (
     <div class="editor">
       <div class="tools">
         <button class="primary small" disabled={!changed || !mayDrive.value} onClick={() => apply(text.value)} data-testid="apply">
           Apply
         </button>
-        {!changed && problems.value.length > 0 && (
+        {canBuildAgain && (
           <button class="small" disabled={!mayDrive.value || building.value !== null} onClick={() => apply(text.value)} data-testid="build-again">
             Build again
           </button>
@@ -238,7 +239,7 @@ export function Editor() {
             Revert
           </button>
         )}
-        <span class="quiet keys">Ctrl+Enter</span>
+        {!canBuildAgain && <span class="quiet keys">Ctrl+Enter</span>}
         <span class="grow" />
         <button class="bare" title="Undo" aria-label="Undo" disabled={!d.undo || changed || !mayDrive.value} onClick={() => post('/api/robot/undo')}>
           <Icon name="undo" />
@@ -246,9 +247,14 @@ export function Editor() {
         <button class="bare" title="Redo" aria-label="Redo" disabled={!d.redo || changed || !mayDrive.value} onClick={() => post('/api/robot/redo')}>
           <Icon name="redo" />
         </button>
-        <button class="bare" title="Save" aria-label="Save" disabled={changed || !mayDrive.value || (!d.unsaved && !!d.name)} onClick={save}>
+        <button class="bare" title="Save" aria-label="Save" disabled={changed || !mayDrive.value || (!d.unsaved && !!d.name)} onClick={() => (d.name ? saveRobot() : askForName())}>
           <Icon name="save" />
         </button>
+        {d.name && (
+          <button class="bare" title="Save under another name" aria-label="Save under another name" disabled={changed || !mayDrive.value} onClick={askForName}>
+            <Icon name="save_as" />
+          </button>
+        )}
       </div>
       {saveAs !== null && (
         <form
