@@ -181,8 +181,11 @@ export function App() {
           <span class="grow" />
           {problems.value.length > 0 && (
             <span class="helm lost" data-testid="file-wrong">
-              <Icon name="warn" /> {ofFile > 0 ? counted(ofFile, 'error') : 'the robot could not be built'}
-              {ofFile > 0 && <span class="where"> in the file</span>}
+              <Icon name="warn" />
+              <span>
+                {ofFile > 0 ? counted(ofFile, 'error') : 'the robot could not be built'}
+                {ofFile > 0 && <span class="where"> in the file</span>}
+              </span>
             </span>
           )}
           <Helm />
