@@ -20,9 +20,8 @@ using robot::testing::run_text;
 
 namespace {
 
-/// A small clamped cube, which takes no part, a ground z = 0, and an object.
-std::string impact_world(const std::string& object, const std::string& program, double friction = 0) {
-    return fmt::format(R"(
+/// A small clamped cube, which takes no part.
+const std::string post = R"(
 name = "impact"
 length_unit = "mm"
 [material.rubber]
@@ -31,14 +30,18 @@ poisson_ratio = 0.45
 [[body]]
 name = "post"
 material = "rubber"
-geometry = {{ box = [[-300, 0, 10], [-290, 10, 20]] }}
+geometry = { box = [[-300, 0, 10], [-290, 10, 20]] }
 [mesh]
 size = "10 mm"
 order = 1
 [[fixed]]
 name = "clamp"
-plane = {{ point = [0, 0, 10], normal = [0, 0, 1] }}
-[contact]
+plane = { point = [0, 0, 10], normal = [0, 0, 1] }
+)";
+
+/// The post, a ground z = 0, and an object.
+std::string impact_world(const std::string& object, const std::string& program, double friction = 0) {
+    return post + fmt::format(R"([contact]
 distance = "0.4 mm"
 [[obstacle]]
 name = "ground"
@@ -49,7 +52,7 @@ friction = {}
 [program]
 gravity = [0, 0, -9.81]
 {})",
-                       friction, object, program);
+                              friction, object, program);
 }
 
 double height(const sim::Step& step) {
@@ -388,23 +391,7 @@ namespace {
 
 /// A weight of 100 g that hangs on a cable with 50 mm of slack.
 sim::Trajectory fall_into_slack(const std::string& program) {
-    return run_text(R"(
-name = "caught"
-length_unit = "mm"
-[material.rubber]
-youngs_modulus = "1 MPa"
-poisson_ratio = 0.45
-[[body]]
-name = "post"
-material = "rubber"
-geometry = { box = [[-300, 0, 10], [-290, 10, 20]] }
-[mesh]
-size = "10 mm"
-order = 1
-[[fixed]]
-name = "clamp"
-plane = { point = [0, 0, 10], normal = [0, 0, 1] }
-[[object]]
+    return run_text(post + R"([[object]]
 name = "weight"
 geometry = { box = [[-5, -5, -5], [5, 5, 5]] }
 mass = "100 g"

@@ -77,7 +77,7 @@ bool Stepper::chooses_scheme() const {
 int Stepper::touching_after(const RobotState& robot, const State& next, const Controls& controls) const {
     const Touching there = system_.touching(next, controls);
     const std::vector<int> holding = holding_cables(system_, next, controls);
-    const bool as_before = there.is_part_of(system_.touching(robot.now.state, robot.controls)) &&
+    const bool as_before = (there.none() || there.is_part_of(system_.touching(robot.now.state, robot.controls))) &&
                            std::ranges::includes(taut_cables(system_, robot.now.state, robot.controls), holding);
     if (!as_before) return 1;
     const int so_far = robot.history.touching;
