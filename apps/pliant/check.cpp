@@ -23,6 +23,7 @@
 #include "printed.hpp"
 #include "printing/job/job.hpp"
 #include "printing/machine/board_report.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/operate/board.hpp"
 #include "printing/operate/job_file.hpp"
@@ -162,7 +163,7 @@ Result<std::string> check(const std::string& file, const CheckOptions& options, 
     if (options.cancel_after >= 0 && (options.firmware || !is_program))
         return input_error("{}: is no G-code file; --cancel-after ends a G-code program", file);
     if (options.firmware) return check_boards(file, options);
-    if (is_built_in_printer(file)) return check_printer(file);
+    if (machine::is_built_in_printer(file)) return check_printer(file);
     if (extension == ".toml") return check_toml(file, options, progress);
     if (!options.assignments.empty()) return no_assignments(file);
     if (extension == ".zip") return check_job(file, options);

@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "base/core/json.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "robot/file/material_library.hpp"
-#include "studio/built_in/examples.hpp"
 
 namespace pliant::app {
 namespace {
@@ -26,9 +26,9 @@ std::vector<std::string> split(std::string_view text, char by) {
 std::vector<std::string> built_in(const std::string& name) {
     std::vector<std::string> words;
     if (name == "--printer" || name == "printer" || name == "printers") {
-        for (const studio::BuiltInFile& file : studio::example_printers()) words.emplace_back(file.name);
+        for (const EmbeddedFile& file : machine::built_in_printers()) words.emplace_back(file.name);
     } else if (name == "names") {
-        for (const robot::LibraryFile& file : robot::library_files()) words.emplace_back(file.name);
+        for (const EmbeddedFile& file : robot::library_files()) words.emplace_back(file.name);
     }
     return words;
 }

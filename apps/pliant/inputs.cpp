@@ -10,9 +10,9 @@
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
 #include "geometry/open/open_geometry.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "robot/file/robot_document.hpp"
 #include "robot/file/robot_file.hpp"
-#include "studio/built_in/examples.hpp"
 
 namespace pliant::app {
 namespace {
@@ -113,31 +113,7 @@ std::string text_of(FileKind kind, const std::string& file, FileKind needed) {
                        file, geometry_name(file), file, stem);
 }
 
-std::vector<std::string> built_in_names() {
-    std::vector<std::string> names;
-    for (const studio::BuiltInFile& file : studio::example_printers()) names.emplace_back(file.name);
-    return names;
-}
-
-/// True for a word that could be the name of a printer, and is not that of a file.
-bool is_name(const std::string& word) {
-    std::error_code ignored;
-    return word.find_first_of("./\\") == std::string::npos && !fs::exists(word, ignored);
-}
-
-tl::unexpected<Error> no_such_printer(const std::string& name) {
-    const std::vector<std::string> names = built_in_names();
-    const std::string nearest = nearest_name(name, names);
-    if (!nearest.empty())
-        return input_error("{}: there is no such file or built-in printer; did you mean \"{}\"?", name, nearest);
-    return input_error("{}: there is no such file or built-in printer; built in are {}", name, join_names(names));
-}
-
 }  // namespace
-
-bool is_built_in_printer(const std::string& name) {
-    return is_name(name) && studio::find_file(studio::example_printers(), name) != nullptr;
-}
 
 FileKind kind_of(const fs::path& file) {
     constexpr std::array<std::string_view, 12> geometry{".stl", ".obj", ".ply", ".3mf",  ".step", ".stp",
@@ -160,20 +136,14 @@ Status expect(FileKind needed, const std::string& file) {
 }
 
 Result<PrinterText> read_printer_file(const std::string& name) {
-    std::string text;
-    if (is_name(name)) {
-        const studio::BuiltInFile* file = studio::find_file(studio::example_printers(), name);
-        if (file == nullptr) return no_such_printer(name);
-        text = std::string(file->text);
-    } else {
+    if (!machine::is_printer_name(name)) {
         if (Status status = expect(FileKind::printer, name); !status) return tl::unexpected(status.error());
-        Result<std::string> read = read_file(name);
-        if (!read) return tl::unexpected(read.error());
-        text = std::move(*read);
     }
-    Result<machine::Printer> printer = machine::parse_printer(text, name);
+    Result<std::string> text = machine::read_printer_text(name);
+    if (!text) return tl::unexpected(text.error());
+    Result<machine::Printer> printer = machine::parse_printer(*text, name);
     if (!printer) return tl::unexpected(printer.error());
-    return PrinterText{std::move(*printer), std::move(text)};
+    return PrinterText{std::move(*printer), std::move(*text)};
 }
 
 Result<machine::Printer> read_printer(const std::string& name) {

@@ -19,9 +19,6 @@ namespace pliant::app {
 
 enum class FileKind { unknown, robot, printer, study, job, geometry };
 
-/// A word that no file has for a name, but a printer of Pliant's own.
-[[nodiscard]] bool is_built_in_printer(const std::string& name);
-
 /// Recognised by content: a TOML file has keys that only robots, only printers or only studies have; a zip file is a
 /// job if it has a manifest. `geometry`: 3MF, STL, OBJ, PLY, STEP and mesh files, by name.
 [[nodiscard]] FileKind kind_of(const std::filesystem::path& file);

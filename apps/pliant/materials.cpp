@@ -17,7 +17,7 @@ struct MaterialsOptions {
 Status list(const MaterialsOptions& options) {
     std::vector<std::string> names = options.names;
     if (names.empty()) {
-        for (const robot::LibraryFile& file : robot::library_files()) names.emplace_back(file.name);
+        for (const EmbeddedFile& file : robot::library_files()) names.emplace_back(file.name);
     }
     std::vector<robot::LibraryMaterial> materials;
     for (const std::string& name : names) {

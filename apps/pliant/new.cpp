@@ -17,6 +17,7 @@
 #include "command.hpp"
 #include "inputs.hpp"
 #include "printed.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "studio/built_in/examples.hpp"
 
 namespace pliant::app {
@@ -46,32 +47,31 @@ std::string renamed(std::string_view text, std::string_view name) {
     return std::string(text.substr(0, at)) + std::string(name) + std::string(text.substr(at + title.size()));
 }
 
-nlohmann::json list_json(std::span<const studio::BuiltInFile> files) {
+nlohmann::json list_json(std::span<const EmbeddedFile> files) {
     nlohmann::json list = nlohmann::json::array();
-    for (const studio::BuiltInFile& file : files)
-        list.push_back({{"template", file.name}, {"name", title_of(file.text)}});
+    for (const EmbeddedFile& file : files) list.push_back({{"template", file.name}, {"name", title_of(file.text)}});
     return list;
 }
 
-void print_list(const char* heading, std::span<const studio::BuiltInFile> files) {
+void print_list(const char* heading, std::span<const EmbeddedFile> files) {
     fmt::print("{}\n", heading);
-    for (const studio::BuiltInFile& file : files) fmt::print("  {:<18} {}\n", file.name, title_of(file.text));
+    for (const EmbeddedFile& file : files) fmt::print("  {:<18} {}\n", file.name, title_of(file.text));
 }
 
 Status list_built_in(const NewOptions& options) {
     if (options.output.json) {
         print_json(nlohmann::json{{"robots", list_json(studio::example_robots())},
-                                  {"printers", list_json(studio::example_printers())}});
+                                  {"printers", list_json(machine::built_in_printers())}});
         return {};
     }
     print_list("robots: pliant new TEMPLATE -o FILE.toml", studio::example_robots());
-    print_list("printers: pliant new --printer TEMPLATE -o FILE.toml", studio::example_printers());
+    print_list("printers: pliant new --printer TEMPLATE -o FILE.toml", machine::built_in_printers());
     return {};
 }
 
-tl::unexpected<Error> no_such_template(const std::string& name, std::span<const studio::BuiltInFile> files) {
+tl::unexpected<Error> no_such_template(const std::string& name, std::span<const EmbeddedFile> files) {
     std::vector<std::string> names;
-    for (const studio::BuiltInFile& file : files) names.emplace_back(file.name);
+    for (const EmbeddedFile& file : files) names.emplace_back(file.name);
     const std::string nearest = nearest_name(name, names);
     if (nearest.empty()) return input_error("{}: there is no such template; there are {}", name, join_names(names));
     return input_error("{}: there is no such template; did you mean \"{}\"?", name, nearest);
@@ -92,8 +92,8 @@ Status make(const NewOptions& options) {
         return input_error("give the template of a robot, or --printer with that of a printer");
     const bool of_robots = options.printer.empty();
     const std::string& name = of_robots ? options.robot : options.printer;
-    const auto files = of_robots ? studio::example_robots() : studio::example_printers();
-    const studio::BuiltInFile* found = studio::find_file(files, name);
+    const auto files = of_robots ? studio::example_robots() : machine::built_in_printers();
+    const EmbeddedFile* found = find_file(files, name);
     if (found == nullptr) return no_such_template(name, files);
     const std::string file = options.file.empty() ? name + ".toml" : options.file;
     Status fits = check_ending("-o", file, of_robots ? "a robot file" : "a printer file", ".toml");

@@ -23,7 +23,7 @@ struct SliceOptions {
     /// One robot file; or any number of FILE.3mf, FILE.vtk (one material per region) and MATERIAL=FILE (a surface or
     /// solid).
     std::vector<std::string> inputs;
-    std::filesystem::path printer;     ///< printer file (TOML)
+    std::filesystem::path printer;     ///< printer file (TOML), or the name of a built-in printer: "tower"
     std::vector<std::string> changes;  ///< overrides of the robot file, KEY=VALUE
     std::vector<std::string> resins;   ///< MATERIAL=RESIN: the resin each material is printed in
     std::string layer;                 ///< layer height

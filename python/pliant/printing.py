@@ -141,7 +141,7 @@ def slice(
         inputs: a robot file or a :class:`Robot`; or any of FILE.3mf, FILE.vtk (regions are materials) and MATERIAL=FILE
             of a surface.
         job: path of the job file that is written (.zip).
-        printer: printer file (TOML).
+        printer: printer file (TOML), or the name of a built-in printer: "tower". ``pliant new`` lists them.
         changes: changes of the robot file, as {"parameters.notches": 5}.
         resins: the resin of each material, by material.
         layer: height of a layer with its unit, as "50 um"; None: that of the printer.

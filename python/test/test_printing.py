@@ -66,6 +66,15 @@ def test_a_print_can_be_cancelled_and_a_bad_job_is_refused(job, tmp_path):
             work(broken)
 
 
+def test_a_built_in_printer_is_named(job, tmp_path):
+    file, plan = job
+    named = tmp_path / "named.zip"
+    assert pliant.slice(FINGER, named, printer="tower", layer="0.1 mm") == plan
+    assert named.read_bytes() == file.read_bytes()
+    with pytest.raises(pliant.InputError, match='towr: there is no such file or built-in printer; did you mean "tower"'):
+        pliant.slice(FINGER, tmp_path / "no.zip", printer="towr")
+
+
 def test_a_robot_made_in_python_can_be_sliced(job, tmp_path):
     _, plan = job
     robot = pliant.Robot.load(FINGER)

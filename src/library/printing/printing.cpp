@@ -4,10 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include "base/core/files.hpp"
 #include "library/base/calls.hpp"
 #include "library/printing/cured_block.hpp"
 #include "printing/job/job.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/operate/proved_job.hpp"
@@ -39,7 +39,7 @@ PrintPlan plan_of(const plan::Plan& plan) {
 }
 
 prepare::PrinterFile printer_of(const std::filesystem::path& file) {
-    std::string text = value_of(read_file(file));
+    std::string text = value_of(machine::read_printer_text(file.string()));
     machine::Printer printer = value_of(machine::parse_printer(text, file.string()));
     auto mask = value_of(operate::load_mask(printer.projector, file.string()));
     return {std::move(printer), std::move(text), std::move(mask)};
@@ -62,7 +62,7 @@ prepare::Order order_of(const SliceOptions& options) {
 
 PrintPlan slice_job(const SliceOptions& options, const std::filesystem::path& job, const Watch& watch) {
     if (options.inputs.empty()) throw Failure(Failure::Kind::input, "nothing is given to be sliced");
-    if (options.printer.empty()) throw Failure(Failure::Kind::input, "no printer file is named to slice for");
+    if (options.printer.empty()) throw Failure(Failure::Kind::input, "no printer is named to slice for");
     if (job.empty()) throw Failure(Failure::Kind::input, "the name of the job file is empty");
     library::check(prepare::check_job_name(job, options.inputs, options.printer));
     const prepare::PrinterFile printer = printer_of(options.printer);

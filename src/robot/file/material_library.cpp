@@ -23,14 +23,7 @@ bool contains(const std::array<std::string_view, n>& keys, std::string_view key)
     return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-const LibraryFile* find_file(std::string_view name) {
-    for (const LibraryFile& file : library_files()) {
-        if (file.name == name) return &file;
-    }
-    return nullptr;
-}
-
-Result<config::Document> parse_file(const LibraryFile& file) {
+Result<config::Document> parse_file(const EmbeddedFile& file) {
     return config::parse(file.text, "data/materials/" + std::string(file.name) + ".toml");
 }
 
@@ -51,7 +44,7 @@ void set_line(config::Value& value, int line) {
 }  // namespace
 
 Result<LibraryMaterial> library_material(std::string_view name) {
-    const LibraryFile* file = find_file(name);
+    const EmbeddedFile* file = find_file(library_files(), name);
     if (file == nullptr) return input_error("the library has no material \"{}\"{}", name, library_hint(name));
     Result<config::Document> document = parse_file(*file);
     if (!document) return tl::unexpected(document.error());
@@ -74,7 +67,7 @@ std::string library_hint(std::string_view given) {
     std::string name = lower_case(given);  // as the library writes names
     std::ranges::replace(name, ' ', '-');
     std::vector<std::pair<int, std::string>> near;
-    for (const LibraryFile& file : library_files()) {
+    for (const EmbeddedFile& file : library_files()) {
         const int distance = edit_distance(name, file.name);
         const std::string_view stem = file.name.substr(0, file.name.find('-'));
         const bool family =
@@ -96,7 +89,7 @@ config::Value with_base(const config::Value& own, std::string_view base) {
     for (const config::Entry& entry : keys) {
         if (entry.first != "base") table.push_back(entry);
     }
-    const LibraryFile* file = find_file(base);
+    const EmbeddedFile* file = find_file(library_files(), base);
     const Result<config::Document> document = parse_file(*file);
     if (!document) return merged;
     for (config::Entry entry : std::get<config::Table>(document->root.data)) {

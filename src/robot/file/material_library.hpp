@@ -8,16 +8,13 @@
 #include <vector>
 
 #include "base/core/config.hpp"
+#include "base/core/embedded_file.hpp"
 #include "robot/description/robot.hpp"
 
 namespace pliant::robot {
 
-struct LibraryFile {
-    std::string_view name;
-    std::string_view text;  ///< TOML
-};
 /// By name.
-[[nodiscard]] std::span<const LibraryFile> library_files();
+[[nodiscard]] std::span<const EmbeddedFile> library_files();
 
 /// A material of the library and its documentation.
 struct LibraryMaterial {

@@ -56,7 +56,7 @@ std::string line(const LibraryMaterial& m) {
 std::string library_text() {
     std::string text = fmt::format("{:<20} {:<14} {:>9} {:>8} {:>9} {:>14}  {}\n", "material", "law", "E0 MPa", "nu",
                                    "kg/m^3", "hardness", "stretch");
-    for (const LibraryFile& file : library_files()) {
+    for (const EmbeddedFile& file : library_files()) {
         if (const auto material = library_material(file.name)) text += line(*material);
     }
     return text;

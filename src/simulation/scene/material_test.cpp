@@ -184,7 +184,7 @@ TEST_CASE("every library material is valid, stable in its range, and in the refe
     const Result<std::string> page = read_file("docs/reference/materials.md");
     REQUIRE(page);
     CHECK(library_files().size() >= 14);
-    for (const LibraryFile& file : library_files()) {
+    for (const EmbeddedFile& file : library_files()) {
         CAPTURE(file.name);
         const Result<LibraryMaterial> m = library_material(file.name);
         REQUIRE_MESSAGE(m, (m ? "" : m.error().message));

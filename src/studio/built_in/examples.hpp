@@ -1,21 +1,14 @@
-// Robots and printers that are compiled into the program, so that the studio opens from anywhere.
+// What is compiled into the program for the studio, so that it opens from anywhere: example robots, and the page.
 #pragma once
 
 #include <span>
 #include <string_view>
 
+#include "base/core/embedded_file.hpp"
+
 namespace pliant::studio {
 
-struct BuiltInFile {
-    std::string_view name;  ///< "gripper"
-    std::string_view text;
-};
-
-[[nodiscard]] std::span<const BuiltInFile> example_robots();
-[[nodiscard]] std::span<const BuiltInFile> example_printers();
-
-/// The file of that name, or nullptr.
-[[nodiscard]] const BuiltInFile* find_file(std::span<const BuiltInFile> files, std::string_view name);
+[[nodiscard]] std::span<const EmbeddedFile> example_robots();
 
 /// A file of the page, compressed with gzip.
 struct PageFile {

@@ -6,10 +6,10 @@
 #include "base/core/files.hpp"
 #include "base/core/toml_edit.hpp"
 #include "printing/machine/board_report.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "printing/machine/switches.hpp"
 #include "printing/operate/job_file.hpp"
 #include "studio/base/dumped.hpp"
-#include "studio/built_in/examples.hpp"
 #include "studio/print/millimetres.hpp"
 #include "studio/print/printer_json.hpp"
 
@@ -53,7 +53,7 @@ Json resins_json(const machine::Printer& p) {
 
 /// The text of a printer and the folder of its mask.
 Result<std::pair<std::string, std::filesystem::path>> text_of(const ProjectFolder& folder, const std::string& name) {
-    if (const BuiltInFile* known = find_file(example_printers(), name))
+    if (const EmbeddedFile* known = find_file(machine::built_in_printers(), name))
         return std::pair(std::string(known->text), std::filesystem::path(name + ".toml"));
     const Result<std::filesystem::path> path = folder.resolve(name);
     if (!path) return tl::unexpected(path.error());
@@ -64,7 +64,7 @@ Result<std::pair<std::string, std::filesystem::path>> text_of(const ProjectFolde
 }
 
 Result<std::filesystem::path> own_file(const ProjectFolder& folder, const std::string& name) {
-    if (find_file(example_printers(), name) != nullptr)
+    if (find_file(machine::built_in_printers(), name) != nullptr)
         return input_error("{}: is built in; make a printer file of your own from it", name);
     Result<std::filesystem::path> path = folder.resolve(name);
     if (path && lower_extension(*path) != ".toml") return input_error("\"{}\": a printer file ends with .toml", name);
@@ -160,7 +160,7 @@ std::string printer_setup_json(const std::string& name, const machine::Printer& 
 
 std::string built_in_printers_json() {
     Json list = Json::array();
-    for (const BuiltInFile& file : example_printers()) {
+    for (const EmbeddedFile& file : machine::built_in_printers()) {
         const Result<machine::Printer> p = machine::parse_printer(file.text, std::string(file.name) + ".toml");
         if (!p) continue;
         list.push_back(

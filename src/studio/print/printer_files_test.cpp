@@ -9,7 +9,7 @@
 #include "base/core/files.hpp"
 #include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
-#include "studio/built_in/examples.hpp"
+#include "printing/machine/built_in_printers.hpp"
 
 using namespace pliant;
 using namespace pliant::studio;
@@ -34,7 +34,7 @@ struct PrinterBench {
 TEST_CASE("a new printer file is a copy of a built-in one, and overwrites nothing") {
     const PrinterBench b;
     REQUIRE(new_printer(b.folder, "tower", "mine.toml").has_value());
-    CHECK(b.text("mine.toml") == find_file(example_printers(), "tower")->text);
+    CHECK(b.text("mine.toml") == find_file(machine::built_in_printers(), "tower")->text);
     CHECK(holds(new_printer(b.folder, "tower", "mine.toml").error().message, "exists"));
     CHECK(holds(new_printer(b.folder, "tower", "mine.txt").error().message, "ends with .toml"));
     CHECK(holds(new_printer(b.folder, "tower", "../mine.toml").error().message, ".."));
@@ -105,7 +105,7 @@ TEST_CASE("the page gets a printer's settings, and a board's answers compared wi
     CHECK(told["axes"][0]["max"] == 358);
     CHECK(told["resins"].size() >= 2);
     CHECK(told["baud_rate"] == 115200);
-    CHECK(Json::parse(built_in_printers_json()).size() == example_printers().size());
+    CHECK(Json::parse(built_in_printers_json()).size() == machine::built_in_printers().size());
     const Json board = Json::parse(board_json(
         "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) PROTOCOL_VERSION:1.0\nCap:EMERGENCY_PARSER:1\nok\n", file->printer));
     CHECK(holds(board["firmware"].get<std::string>(), "Marlin 2.1.2"));

@@ -61,7 +61,7 @@ Response check(Studio& studio, const Request& request) {
 
 Response materials(Studio&, const Request&) {
     Json list = Json::array();
-    for (const robot::LibraryFile& file : robot::library_files()) {
+    for (const EmbeddedFile& file : robot::library_files()) {
         const auto material = robot::library_material(file.name);
         if (material)
             list.push_back({{"name", file.name}, {"title", material->title}, {"hardness", material->hardness}});

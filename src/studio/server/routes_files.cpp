@@ -61,7 +61,7 @@ Response picture_of_job(const std::filesystem::path& file) {
 Response thumbnail(Studio& studio, const Request& request) {
     const std::string example = asked_for(request, "example"), name = asked_for(request, "file");
     if (!example.empty()) {
-        const BuiltInFile* found = find_file(example_robots(), example);
+        const EmbeddedFile* found = find_file(example_robots(), example);
         if (found == nullptr) return error_response(404, "there is no such example");
         return picture(studio, std::string(found->text), studio.folder().path() / (example + ".toml"));
     }

@@ -4,10 +4,10 @@
 
 #include "base/core/files.hpp"
 #include "base/core/json.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "printing/plan/plan.hpp"
 #include "printing/plan/timeline.hpp"
 #include "studio/base/dumped.hpp"
-#include "studio/built_in/examples.hpp"
 #include "studio/make/slice_robot.hpp"
 #include "studio/print/job_json.hpp"
 #include "studio/print/job_part.hpp"
@@ -131,7 +131,7 @@ Response compare_printers(Studio& studio, const Request&) {
     job::Manifest manifest = open->archive.manifest();
     manifest.any_vat = true;
     Json rows = Json::array();
-    for (const BuiltInFile& file : example_printers()) {
+    for (const EmbeddedFile& file : machine::built_in_printers()) {
         const Result<machine::Printer> printer = machine::parse_printer(file.text, std::string(file.name) + ".toml");
         if (!printer) continue;
         const Result<plan::Plan> plan = plan::make_plan(manifest, *printer);

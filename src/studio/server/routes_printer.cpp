@@ -4,9 +4,9 @@
 #include "base/core/files.hpp"
 #include "base/core/json.hpp"
 #include "printing/host/projector_patterns.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "printing/operate/board.hpp"
 #include "studio/base/dumped.hpp"
-#include "studio/built_in/examples.hpp"
 #include "studio/print/job_json.hpp"
 #include "studio/print/printer_files.hpp"
 #include "studio/server/json_toml.hpp"
@@ -28,7 +28,8 @@ Response setup(Studio& studio, const Request& request) {
     const std::string name = asked_name(request);
     const auto file = read_printer(studio.folder(), name);
     if (!file) return error_response(file.error());
-    return json_response(printer_setup_json(name, file->printer, find_file(example_printers(), name) != nullptr));
+    return json_response(
+        printer_setup_json(name, file->printer, find_file(machine::built_in_printers(), name) != nullptr));
 }
 
 Response text(Studio& studio, const Request& request) {

@@ -3,6 +3,7 @@
 
 #include "base/core/files.hpp"
 #include "base/core/json.hpp"
+#include "printing/machine/built_in_printers.hpp"
 #include "studio/base/dumped.hpp"
 #include "studio/built_in/examples.hpp"
 #include "studio/server/request_reading.hpp"
@@ -26,8 +27,8 @@ void add_own_printers(const ProjectFolder& folder, Json& printers) {
 Response project(Studio& studio, const Request&) {
     const Studio::Document d = studio.document();
     Json examples = Json::array(), printers = Json::array();
-    for (const BuiltInFile& file : example_robots()) examples.push_back(file.name);
-    for (const BuiltInFile& file : example_printers()) printers.push_back(file.name);
+    for (const EmbeddedFile& file : example_robots()) examples.push_back(file.name);
+    for (const EmbeddedFile& file : machine::built_in_printers()) printers.push_back(file.name);
     add_own_printers(studio.folder(), printers);
     const Json json = {
         {"version", studio.version()},      {"name", d.name},       {"folder", studio.folder().path().string()},

@@ -287,7 +287,7 @@ Status Studio::open_file(const std::string& name) {
 }
 
 void Studio::open_example(const std::string& name) {
-    const BuiltInFile* example = find_file(example_robots(), name);
+    const EmbeddedFile* example = find_file(example_robots(), name);
     if (example == nullptr) return;
     const std::lock_guard lock(mutex_);
     const std::string text(example->text);
@@ -336,7 +336,7 @@ Status Studio::compare(const std::string& name, const std::string& example) {
     std::string title = name.empty() ? example : name;
     std::vector<std::string> outside;
     if (!example.empty()) {
-        const BuiltInFile* found = find_file(example_robots(), example);
+        const EmbeddedFile* found = find_file(example_robots(), example);
         if (found == nullptr) return input_error("\"{}\": there is no such example", example);
         source = {folder_.path() / (example + ".toml"), std::string(found->text)};
     } else if (!name.empty()) {
