@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/core/embedded_file.hpp"
-#include "base/core/result.hpp"
+#include "base/core/error.hpp"
 
 namespace pliant::machine {
 
