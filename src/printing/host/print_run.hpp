@@ -33,6 +33,8 @@ enum class Ending {
     left,  ///< suspended, but not parked: the door is open
 };
 
+/// print_run.cpp goes through its steps; print_run_light.cpp has the exposures, print_run_requests.cpp what is asked of
+/// it meanwhile.
 class PrintRun {
 public:
     PrintRun(const RunSetup& run, JournalFacts facts);
@@ -55,6 +57,14 @@ private:
     [[nodiscard]] Status expose(std::size_t step);
     /// `entry`: the image's name in the job.
     [[nodiscard]] Status shine(std::size_t step, const job::Image& image, const std::string& entry, LightFact& fact);
+    [[nodiscard]] Status announce(std::size_t step, LightFact& fact);
+    void show_light(const LightFact& fact, const std::string& entry, double left_s);
+    struct Darkness {
+        double on_s = 0;  ///< how long the light was on
+        Status status;    ///< of the projector
+    };
+    [[nodiscard]] Darkness go_dark(bool whole, double start_s);
+    [[nodiscard]] Status note_dark(LightFact& fact, double on_s);
     [[nodiscard]] Status burn(double until_s, double before_s, bool& whole);
     [[nodiscard]] Status serve_wishes(std::size_t step);
     [[nodiscard]] Status between_layers(std::size_t step);
@@ -76,6 +86,8 @@ private:
     [[nodiscard]] bool at_safe_point() const;
     [[nodiscard]] int next_layer(std::size_t step) const;
     [[nodiscard]] bool wants_to_end() const;
+    /// Ends a run early without an error of its own.
+    [[nodiscard]] static tl::unexpected<Error> wish_to_end() { return cancelled(); }
     void show_progress();
     void reach(std::size_t step);
     void recall_layer(std::size_t next);
