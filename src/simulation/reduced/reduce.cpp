@@ -13,6 +13,7 @@
 #include "simulation/material/response.hpp"
 #include "simulation/reduced/reduced_model.hpp"
 #include "simulation/reduced/sampled_robot.hpp"
+#include "simulation/reduced/self_contact.hpp"
 #include "simulation/reduced/snapshot_basis.hpp"
 #include "simulation/reduced/sparse_weights.hpp"
 
@@ -96,7 +97,7 @@ private:
     [[nodiscard]] int* take(RobotState robot, const Eigen::VectorXd& shares, Reduction& reduction) {
         if (!stepper_.drive(robot, space_.inputs(shares, task_.times.back()), progress_).arrived)
             return &reduction.not_found;
-        if (robot.controls.met) return &reduction.touching;
+        if (touches_itself(stepper_, robot)) return &reduction.touching;
         robot.memory = nullptr;
         robot.past.clear();
         reduction.samples.push_back({robot.inputs, robot.now.state, {}});

@@ -13,6 +13,7 @@
 #include "simulation/reduced/error_estimate.hpp"
 #include "simulation/reduced/reduced_solver.hpp"
 #include "simulation/reduced/sampled_robot.hpp"
+#include "simulation/reduced/self_contact.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
@@ -126,6 +127,33 @@ TEST_CASE("reduced model: with all tets and all modes it is the whole robot at t
               1e-3 * reduced->reach_m());
         CHECK(state.at.multipliers[0] == near(sample.state.multiplier[0], {.relative = 1e-3, .absolute = 1e-4}));
     }
+}
+
+TEST_CASE(
+    "reduced model: a robot that would meet itself only on the straight way from one sample to the next is sampled") {
+    Description d = bar(2);
+    d.contact.emplace();
+    d.contact->surface = contact::robot_surface(d.mesh);
+    d.contact->settings.self = d.contact->self_when_met = true;
+    d.contact->settings.distance_m = 1e-4;
+    d.contact->settings.slip_m = 1e-5;
+    d.contact->settings.stiffness_Pa = 1e6;
+    const Model model = made(d);
+    // By turns bent far up and far down: on the straight way between the two the bar is crushed.
+    const InverseTask task = task_for(model, {{0.6, 1}, {0.6, 1}});
+    Stepper stepper(model, tight);
+    const InputSpace space(stepper, task);
+    RobotState robot = stepper.rest();
+    int met = 0;
+    for (const double up : {0.0, 1.0, 0.0, 1.0}) {
+        REQUIRE(stepper.drive(robot, space.inputs(Eigen::Vector2d(up, 1 - up), 1), {}).arrived);
+        met += robot.controls.met;
+        CHECK_FALSE(touches_itself(stepper, robot));
+        CHECK_FALSE(robot.controls.met);
+    }
+    CHECK(met > 0);
+    const ReducedModel reduced = reduced_of(model, task, {.samples = 8});
+    CHECK(reduced.reduction().touching == 0);
 }
 
 TEST_CASE("reduced model: gravity, slack cables and cables by tension") {

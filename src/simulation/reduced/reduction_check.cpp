@@ -6,6 +6,7 @@
 #include "simulation/inverse/follow.hpp"
 #include "simulation/inverse/input_space.hpp"
 #include "simulation/reduced/error_estimate.hpp"
+#include "simulation/reduced/self_contact.hpp"
 
 namespace pliant::sim::reduced {
 namespace {
@@ -53,7 +54,7 @@ Result<std::vector<CheckedInputs>> check_reduction(const ReducedModel& model, co
             rows.push_back(std::move(row));
             continue;
         }
-        row.touching = whole.controls.met;
+        row.touching = touches_itself(stepper, whole);
         row.estimate_s = seconds_of([&] { row.estimated_m = estimator.estimate(state).error_m; });
         row.motion_m = longest(whole.x() - rest);
         row.error_m = longest(model.positions(state.at.amplitudes) - whole.x());
