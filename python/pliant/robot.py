@@ -196,6 +196,8 @@ def _changes(changes: Changes) -> list[str]:
         if not all(isinstance(k, str) for k in changes):
             raise InputError('changes must have texts as keys, as {"mesh.order": 1}')
         return [f"{k}={_toml.value(v, k)}" for k, v in changes.items()]
+    if not isinstance(changes, Iterable):
+        raise InputError(f'changes must be a dict, as {{"mesh.order": 1}}, or a list of KEY=VALUE, not {changes!r}')
     return _check.texts(changes, "changes")
 
 

@@ -1,4 +1,6 @@
-"""Equilibria as functions of torch: values by :meth:`Model.solve`, derivatives by :meth:`Model.grad`.
+"""Equilibria as functions of torch: values by :meth:`Model.solve`, first derivatives by :meth:`Model.grad`.
+
+Second derivatives (a gradient of a gradient, with ``create_graph=True``) are an error of torch.
 
 Needs torch; the rest of the module does not.
 """
@@ -11,6 +13,7 @@ import numpy as np
 
 try:
     import torch
+    from torch.autograd.function import once_differentiable
 except ImportError as error:
     raise ImportError("pliant.torch needs PyTorch (Debian: python3-torch)") from error
 
@@ -25,6 +28,7 @@ class _Positions(torch.autograd.Function):  # type: ignore[misc]
         return torch.from_numpy(ctx.state.positions.copy()).to(controls)
 
     @staticmethod
+    @once_differentiable
     def backward(ctx: Any, *grads: Any) -> Any:
         found = ctx.state.model.grad(ctx.state, positions=grads[0].detach().cpu().numpy().astype(np.float64))
         return torch.from_numpy(found.controls).to(grads[0]), None, None
@@ -37,6 +41,7 @@ class _Markers(torch.autograd.Function):  # type: ignore[misc]
         return torch.from_numpy(ctx.state.markers()).to(controls)
 
     @staticmethod
+    @once_differentiable
     def backward(ctx: Any, *grads: Any) -> Any:
         model = ctx.state.model
         rows = grads[0].detach().cpu().numpy().astype(np.float64)

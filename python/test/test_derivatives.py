@@ -163,6 +163,15 @@ def test_torch_differentiates_through_an_equilibrium(model):
     assert positions.shape == (model.node_count, 3) and positions.requires_grad
 
 
+def test_torch_refuses_the_gradient_of_a_gradient(model):
+    torch = pytest.importorskip("torch")
+    lengths = torch.tensor([0.058], dtype=torch.float64, requires_grad=True)
+    for function in (pliant.torch.markers, pliant.torch.positions):
+        (slope,) = torch.autograd.grad((function(model, lengths) ** 2).sum(), lengths, create_graph=True)
+        with pytest.raises(RuntimeError, match="once_differentiable"):
+            (slope**2).sum().backward()
+
+
 def test_a_motion_has_gradients_by_its_dampings_and_by_torques():
     def found(damping=0.5, torque=0.02):
         model = bar(
