@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/core/utf8.hpp"
 #include "presentation/draw/cairo_library.hpp"
 
 namespace pliant::report {
@@ -34,29 +35,12 @@ cairo_status_t append_png(void* out, const unsigned char* data, unsigned int len
     return CAIRO_STATUS_SUCCESS;
 }
 
-/// Length of the UTF-8 sequence at the start of `text`, or 0 if it is malformed (RFC 3629, table in section 4).
-std::size_t sequence_length(std::string_view text) {
-    const auto at = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-    const unsigned lead = at(0);
-    const std::size_t length = lead < 0x80                    ? 1
-                               : lead >= 0xc2 && lead < 0xe0  ? 2
-                               : (lead & 0xf0U) == 0xe0       ? 3
-                               : lead >= 0xf0 && lead <= 0xf4 ? 4
-                                                              : 0;
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((at(i) & 0xc0U) != 0x80) return 0;
-    }
-    const bool overlong = (lead == 0xe0 && at(1) < 0xa0) || (lead == 0xf0 && at(1) < 0x90);
-    const bool surrogate_or_beyond = (lead == 0xed && at(1) > 0x9f) || (lead == 0xf4 && at(1) > 0x8f);
-    return overlong || surrogate_or_beyond ? 0 : length;
-}
-
 }  // namespace
 
 std::string printable(std::string_view text) {
     std::string out;
     while (!text.empty()) {
-        const std::size_t length = sequence_length(text);
+        const std::size_t length = utf8_length(text);
         if (length == 0)
             out += "\xef\xbf\xbd";
         else if (length == 1 && (static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7f))

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/core/utf8.hpp"
 #include "studio/requests/message.hpp"
 
 namespace pliant::studio {
@@ -37,6 +38,8 @@ FrameDeed FrameReader::take(int bits, std::string_view payload) {
     text_ += payload;
     is_open_ = !last;
     if (!last) return {};
+    // Of the whole text: a character may lie in two fragments.
+    if (!is_utf8(text_)) return closed(CloseCode::not_utf8);
     return {FrameDeed::Kind::text, std::exchange(text_, {})};
 }
 

@@ -13,6 +13,7 @@ enum class CloseCode : unsigned short {
     going_away = 1001,
     protocol_error = 1002,
     not_text = 1003,
+    not_utf8 = 1007,
     too_large = 1009,
 };
 

@@ -53,6 +53,8 @@ TEST_CASE("what breaks the protocol closes the connection, and the code tells wh
         {0x88, "\x03", CloseCode::protocol_error},        // half a code
         {0x82, "x", CloseCode::not_text},                 //
         {0x02, "x", CloseCode::not_text},                 //
+        {0x81, "\xe2\x82", CloseCode::not_utf8},          // breaks off in a character
+        {0x81, "\xed\xa0\x80", CloseCode::not_utf8},      // a surrogate
         {0x81, std::string(longest_message + 1, ' '), CloseCode::too_large},
     };
     for (const Wrong& wrong : alone) {
@@ -65,6 +67,9 @@ TEST_CASE("what breaks the protocol closes the connection, and the code tells wh
     FrameReader begun;
     REQUIRE(begun.take(0x01, "x").kind == Kind::nothing);
     CHECK(begun.take(0x81, "y").code == CloseCode::protocol_error);  // another text before the end of the first
+    FrameReader divided;
+    REQUIRE(divided.take(0x01, "\xe2\x82").kind == Kind::nothing);
+    CHECK(divided.take(0x80, "\xac").bytes == "\xe2\x82\xac");  // a character in two fragments
     FrameReader growing;
     REQUIRE(growing.take(0x01, std::string(longest_message, ' ')).kind == Kind::nothing);
     CHECK(growing.take(0x80, " ").code == CloseCode::too_large);
