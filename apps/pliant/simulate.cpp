@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,6 +22,7 @@
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "library/simulation/data.hpp"
+#include "library/simulation/unfinished_run.hpp"
 #include "output_option.hpp"
 #include "pliant/program.hpp"
 #include "presentation/report/readable.hpp"
@@ -191,6 +194,17 @@ RunOptions run_options(const SimulateOptions& options, const Robot& robot) {
     return run;
 }
 
+/// A run that keeps no checkpoint leaves the one that is there: of this run unfinished, it may have been forgotten.
+void note_left_checkpoint(const SimulateOptions& options, const Model& model) {
+    if (options.folder.empty() || options.checkpoint_every > 0 || options.resume) return;
+    const std::filesystem::path folder = beside_folder(options.folder, ".checkpoint");
+    if (const std::optional<int> step = library::unfinished_step(*model.data(), folder))
+        fmt::print(stderr,
+                   "{}: note: {} holds this run up to step {} of {} and is left as it is; --resume continues "
+                   "from there\n",
+                   options.robot, folder.string(), *step, model.data()->scene.robot.program.steps);
+}
+
 /// Removes the checkpoint: it is useless after the results are written, unless the run was cancelled.
 void put_away(const SimulateOptions& options, const ProgramResult& result) {
     if (!interrupted()) return result.remove_checkpoint();
@@ -244,6 +258,7 @@ Result<int> simulate(const SimulateOptions& options) {
     if (solvers->size() > 1)
         return compare_solvers(model.data()->scene.model, robot.data().robot.program, *solvers, options.folder,
                                options.output);
+    note_left_checkpoint(options, model);
     ProgramResult result = run(model, run_options(options, robot), watch);
     const bool all_drawn = options.folder.empty() || write_results(options, *pictures, result, *progress);
     progress.reset();

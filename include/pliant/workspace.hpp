@@ -21,7 +21,8 @@ struct WorkspaceOptions {
     int side = 9;       ///< samples along each input of a sheet, 2 to 1000
     int between = 100;  ///< number of further samples, spread over the ranges, 0 to 1,000,000; none with one input
     /// Folder in which completed pieces are stored, so that the search can be resumed; empty: nothing is stored. An
-    /// older checkpoint there is replaced, unless the search resumes from it. Nothing else may work on it meanwhile.
+    /// older checkpoint there is replaced, unless the search resumes from it or it is of the same search, unfinished.
+    /// Nothing else may work on it meanwhile.
     std::filesystem::path checkpoint{};
     /// Resumes from the checkpoint; the results are those of an uninterrupted search.
     bool resume = false;

@@ -296,7 +296,8 @@ def workspace(
         model: a model of a robot with a range for each actuator that may be moved.
         side: samples along each input of a sheet; at least 2.
         between: number of further samples, spread over the ranges; none with one input.
-        checkpoint: folder in which completed pieces are stored, so that the search can be resumed.
+        checkpoint: folder in which completed pieces are stored, so that the search can be resumed. What is there of
+            the same search, unfinished, is not replaced: resume it, or remove the folder.
         resume: resumes from the checkpoint; the results are those of an uninterrupted search.
         progress: called with (stage, share) some times a second; False cancels.
     """

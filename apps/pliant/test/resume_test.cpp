@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -152,6 +153,13 @@ TEST_CASE("resuming without a checkpoint, or from one of another robot, is refus
     CHECK(exit_status(started(robot, results, {"--checkpoint-every", "1"})) == 2);  // --resume is forgotten
     CHECK(read_file(state).value() == last);
     CHECK(exit_status(started(robot, results, {"--resume", "--set", "program.tolerance=1e-5"})) == 2);
+    const std::string plain = std::string(PLIANT_PROGRAM) + " simulate " + robot.string() + " -o " + results.string() +
+                              " --pictures none -q 2>" + (folder / "said").string();
+    CHECK(std::system(plain.c_str()) == 0);  // keeps no checkpoint, and leaves that one
+    CHECK(read_file(state).value() == last);
+    CHECK(read_file(folder / "said")
+              .value()
+              .find("note: " + results.string() + ".checkpoint holds this run up to step ") != std::string::npos);
     REQUIRE(write_file(robot, bar + "\n# changed\n"));
     CHECK(exit_status(started(robot, results, {"--resume"})) == 2);
 }

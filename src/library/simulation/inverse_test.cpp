@@ -176,6 +176,39 @@ TEST_CASE("a cancelled workspace search resumes from its checkpoint to the same 
     CHECK_THROWS_AS((void)whole.sheets(1), Failure);
 }
 
+namespace {
+
+/// The bar with a second cable, along its lower side.
+Model with_two_cables(const std::vector<std::string>& changes = {}) {
+    std::string text = test::bar_text();
+    const std::string end = "\"8 mm\"] }]";
+    text.replace(text.find(end), end.size(),
+                 "\"8 mm\"] }, { name = \"extensor\", points = [[0, 5, 1], [60, 5, 1]], "
+                 "target.shortening = \"0 mm\", range = [\"0 mm\", \"2 mm\"] }]");
+    return Model(Robot::parse(text, {}, changes));
+}
+
+}  // namespace
+
+TEST_CASE("a new search does not delete the samples that an unfinished one has kept") {
+    const test::Folder folder;
+    const Model model = with_two_cables(), other = with_two_cables({"material.soft.youngs_modulus=2 MPa"});
+    const WorkspaceOptions kept{.side = 2, .between = 2, .checkpoint = folder / "kept"};
+    // The sheet of four samples is a piece, and the two between are another.
+    CHECK_THROWS_AS((void)workspace(model, kept, [](std::string_view, double share) { return share < 0.8; }), Failure);
+    CHECK_THROWS_WITH_AS((void)workspace(model, kept),
+                         ((folder / "kept").string() + ": holds 4 of 6 samples of this search, which a new search "
+                                                       "would delete; resume it, or remove the folder")
+                             .c_str(),
+                         Failure);
+    CHECK(fs::exists(folder / "kept/piece_0000"));
+    WorkspaceOptions resumed = kept;
+    resumed.resume = true;
+    const std::string whole = workspace(model, resumed).json();
+    CHECK(workspace(model, kept).json() == whole);  // replaces what was finished
+    CHECK(workspace(other, kept).json() != whole);  // replaces what is of another search
+}
+
 TEST_CASE("a workspace warns of samples at which a chamber would have to pull harder than a vacuum") {
     const Model model(with_goal(reachable));
     CHECK(workspace(model, {.side = 2, .between = 0}).warnings().empty());

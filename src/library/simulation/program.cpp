@@ -10,6 +10,7 @@
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
 #include "library/simulation/drawing.hpp"
+#include "library/simulation/unfinished_run.hpp"
 #include "presentation/report/measured.hpp"
 #include "presentation/report/results.hpp"
 #include "presentation/report/summary.hpp"
@@ -57,13 +58,12 @@ struct Kept {
 /// A run that was interrupted may have taken hours: one forgotten option does not throw it away. What cannot be resumed
 /// is left to Checkpoint::create().
 void refuse_to_replace_unfinished(const Model::Data& model, const std::filesystem::path& folder) {
-    const sim::Program& program = model.scene.robot.program;
-    const auto kept = sim::Checkpoint::open(folder, model.robot->origin(), model.scene.model, program);
-    if (!kept || kept->run.step == 0 || kept->run.step >= program.steps) return;
+    const std::optional<int> step = library::unfinished_step(model, folder);
+    if (!step) return;
     throw Failure(Failure::Kind::input,
                   fmt::format("{}: holds this run up to step {} of {}, which a new run would delete; resume it, or "
                               "remove the folder",
-                              folder.string(), kept->run.step, program.steps),
+                              folder.string(), *step, model.scene.robot.program.steps),
                   folder.string());
 }
 

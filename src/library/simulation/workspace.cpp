@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/core/checkpoint_folder.hpp"
+#include "base/core/counted.hpp"
 #include "base/core/digest.hpp"
 #include "base/core/files.hpp"
 #include "library/base/calls.hpp"
@@ -55,6 +56,14 @@ public:
         auto piece = sim::inverse::piece_from_bytes(*bytes, identity_of(k));
         return piece ? std::optional(std::move(*piece)) : std::nullopt;
     }
+    /// Of the pieces that can be read.
+    [[nodiscard]] std::size_t sample_count() const {
+        std::size_t count = 0;
+        for (std::size_t k = 0; has(k); ++k) {
+            if (const auto piece = read(k)) count += piece->samples.size();
+        }
+        return count;
+    }
     [[nodiscard]] Status write(std::size_t k, const sim::inverse::WorkspacePiece& piece) const {
         return folder_.write(file_of(k), sim::inverse::piece_bytes(piece, identity_of(k)));
     }
@@ -66,13 +75,32 @@ private:
         search_ = digest.text();
     }
     [[nodiscard]] static std::string file_of(std::size_t k) { return fmt::format("piece_{:04}", k); }
+    /// They are written in their order.
+    [[nodiscard]] bool has(std::size_t k) const {
+        std::error_code code;
+        return fs::exists(folder_.path() / file_of(k), code);
+    }
     [[nodiscard]] std::string identity_of(std::size_t k) const { return fmt::format("{} {}", search_, k); }
 
     CheckpointFolder folder_;
     std::string search_;
 };
 
-std::optional<KeptPieces> open_pieces(const Model::Data& model, const WorkspaceOptions& options) {
+/// A search that was interrupted may have taken hours: one forgotten option does not throw it away. What cannot be
+/// resumed is left to KeptPieces::create(). `all`: the number of samples of the whole search.
+void refuse_to_replace_samples(const fs::path& folder, const std::string& origin, std::size_t all) {
+    if (const Result<std::string> there = read_file(folder / origin_name); !there || *there != origin) return;
+    const std::size_t kept = KeptPieces::open(folder, origin).sample_count();
+    if (kept == 0 || kept >= all) return;
+    throw Failure(Failure::Kind::input,
+                  fmt::format("{}: holds {} of {} of this search, which a new search would delete; resume it, or "
+                              "remove the folder",
+                              folder.string(), kept, counted(all, "sample")),
+                  folder.string());
+}
+
+std::optional<KeptPieces> open_pieces(const Model::Data& model, const sim::InverseTask& task,
+                                      const WorkspaceOptions& options) {
     if (options.checkpoint.empty()) {
         if (options.resume)
             throw Failure(Failure::Kind::input, "a search is to be gone on with, but no checkpoint is named");
@@ -81,8 +109,10 @@ std::optional<KeptPieces> open_pieces(const Model::Data& model, const WorkspaceO
     // 3: pieces with a checksum, the search that they are of, and why they lack samples.
     const std::string origin = fmt::format("workspace 3\n{} {}\n{}\n{}", options.side, options.between,
                                            model.robot->origin(), sim::mesh_digest(model.scene.model.mesh()));
-    return options.resume ? KeptPieces::open(options.checkpoint, origin)
-                          : KeptPieces::create(options.checkpoint, origin);
+    if (options.resume) return KeptPieces::open(options.checkpoint, origin);
+    refuse_to_replace_samples(options.checkpoint, origin,
+                              sim::inverse::sample_count(task, {options.side, options.between}));
+    return KeptPieces::create(options.checkpoint, origin);
 }
 
 void check_options(const WorkspaceOptions& options) {
@@ -122,7 +152,7 @@ Workspace workspace(const Model& model, const WorkspaceOptions& options, const W
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model, false));
     library::check(sim::inverse::check_samples(task, {options.side, options.between}));
-    const std::optional<KeptPieces> kept = open_pieces(*model.data(), options);
+    const std::optional<KeptPieces> kept = open_pieces(*model.data(), task, options);
     library::WatchedProgress progress(watch, "workspace");
     auto found = sim::inverse::find_workspace(
         scene.model, sim::stepper_options(scene.robot.program), task, {options.side, options.between},

@@ -62,6 +62,12 @@ std::vector<Plan> plans_for(Eigen::Index size, const WorkspaceOptions& options) 
     return plans;
 }
 
+std::size_t sample_count(const std::vector<Plan>& plans) {
+    std::size_t count = 0;
+    for (const Plan& plan : plans) count += plan.inputs.size();
+    return count;
+}
+
 /// The samples of a plan, with each row of a sheet, and the rows themselves, from the end that is nearer to rest: from
 /// there the way to the first sample is the shortest.
 std::vector<std::size_t> order_of_solving(const Plan& plan, const Eigen::VectorXd& rest) {
@@ -171,6 +177,10 @@ Status check_samples(const InverseTask& task, const WorkspaceOptions& options) {
         most_inputs_with_sheets);
 }
 
+std::size_t sample_count(const InverseTask& task, const WorkspaceOptions& options) {
+    return sample_count(plans_for(static_cast<Eigen::Index>(task.inputs.size()), options));
+}
+
 std::string why_nothing_is_found(const Workspace& workspace) {
     std::string reason;
     for (const WorkspacePiece& piece : workspace.pieces) {
@@ -187,8 +197,8 @@ Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepp
                                  Progress& progress) {
     if (Status status = check_samples(task, options); !status) return tl::unexpected(status.error());
     const std::vector<Plan> plans = plans_for(static_cast<Eigen::Index>(task.inputs.size()), options);
-    std::size_t all = 0, done = 0;
-    for (const Plan& plan : plans) all += plan.inputs.size();
+    const std::size_t all = sample_count(plans);
+    std::size_t done = 0;
     Workspace workspace;
     for (std::size_t k = 0; k < plans.size(); ++k) {
         const auto tell = [&] {

@@ -46,6 +46,9 @@ inline constexpr std::size_t most_inputs_with_sheets = 5;
 /// Error: with these inputs and options there would be no sample.
 [[nodiscard]] Status check_samples(const InverseTask& task, const WorkspaceOptions& options);
 
+/// Of all pieces together.
+[[nodiscard]] std::size_t sample_count(const InverseTask& task, const WorkspaceOptions& options);
+
 /// As a sentence, where no sample has an equilibrium; empty if one has.
 [[nodiscard]] std::string why_nothing_is_found(const Workspace& workspace);
 
