@@ -17,6 +17,8 @@
 #include "presentation/report/html.hpp"
 #include "printing/host/control_types.hpp"
 #include "printing/host/journal_facts.hpp"
+#include "printing/host/resume_point.hpp"
+#include "printing/host/script.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/plan/plan.hpp"
 #include "printing/plan/timeline.hpp"
@@ -310,6 +312,22 @@ std::string head(const Printed& p) {
         html_escaped(p.archive.manifest().name), assets::report_css, style);
 }
 
+/// Errors: a record about something that the job, or its machine, does not have.
+Status check_records(const host::JournalFacts& facts, const operate::OpenJob& open) {
+    const Result<std::string> gcode = open.archive.file("job.gcode");
+    if (!gcode) return tl::unexpected(gcode.error());
+    const Result<host::Script> script = host::read_script(*gcode);
+    if (!script) return tl::unexpected(script.error());
+    const job::Manifest& m = open.archive.manifest();
+    host::PrintJob job;
+    job.layers = static_cast<int>(m.layers.size());
+    for (const job::Material& material : m.materials) job.materials.push_back(material.name);
+    if (Status fits = host::check_fits(facts, *script, job); !fits) return fits;
+    if (!facts.go) return {};
+    const auto known = host::last_known(facts, open.printer);
+    return known ? Status() : tl::unexpected(known.error());
+}
+
 }  // namespace
 
 Result<std::string> print_report(const job::Archive& archive, const machine::Printer& printer,
@@ -346,11 +364,13 @@ Result<std::string> print_report(const std::filesystem::path& job, const std::fi
     const Result<PrintStory> story = story_of(records->records);
     if (!story) return tl::unexpected(story.error());
     // A story can be told of records that mean something else, as those of a newer format.
-    if (const auto facts = host::facts_of(records->records); !facts)
-        return input_error("{}: {}", journal.string(), facts.error().message);
+    const auto facts = host::facts_of(records->records);
+    if (!facts) return input_error("{}: {}", journal.string(), facts.error().message);
     if (!story->digest.empty() && story->digest != host::job_digest(*bytes))
         return input_error("{}: this journal is of another job, or {} has changed since", journal.string(),
                            job.filename().string());
+    if (Status fits = check_records(*facts, *open); !fits)
+        return input_error("{}: {}", journal.string(), fits.error().message);
     return print_report(open->archive, open->printer, records->records, extras);
 }
 

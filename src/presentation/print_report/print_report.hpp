@@ -31,7 +31,8 @@ struct PrintExtras {
                                                const std::vector<host::JournalRecord>& journal,
                                                const PrintExtras& extras);
 
-/// For a job file and the journal beside it. Errors: one of them cannot be read, the journal is of another job.
+/// For a job file and the journal beside it. Errors: one of them cannot be read; the journal is of another job, or one
+/// of its records is about a step, layer, material or vat that there is not.
 [[nodiscard]] Result<std::string> print_report(const std::filesystem::path& job, const std::filesystem::path& journal,
                                                const PrintExtras& extras);
 

@@ -10,6 +10,8 @@
 #include "presentation/print_report/layer_plot.hpp"
 #include "presentation/print_report/print_story.hpp"
 #include "printing/host/control_types.hpp"
+#include "printing/host/journal_facts.hpp"
+#include "printing/plan/plan.hpp"
 #include "printing/plan/test_jobs.hpp"
 
 using namespace pliant;
@@ -55,8 +57,8 @@ Records interrupted_and_resumed() {
     return records;
 }
 
-/// A job of the tower with a block of pixels in every image.
-Result<job::Archive> written(const fs::path& file, job::Manifest m) {
+/// A job of the tower with a block of pixels in every image, and a program if one is given.
+Result<job::Archive> written(const fs::path& file, job::Manifest m, const std::string& gcode = "") {
     auto writer = job::Writer::create(file);
     int number = 0;
     for (job::Layer& layer : m.layers) {
@@ -69,6 +71,7 @@ Result<job::Archive> written(const fs::path& file, job::Manifest m) {
         }
     }
     REQUIRE(writer->add_file("printer.toml", read_file("examples/printers/tower.toml").value()));
+    if (!gcode.empty()) REQUIRE(writer->add_file("job.gcode", gcode));
     REQUIRE(writer->finish(m));
     return job::Archive::open(file);
 }
@@ -173,6 +176,33 @@ TEST_CASE("a print report is one page with pictures, exposures, faults and resin
     REQUIRE_FALSE(newer);
     CHECK(newer.error().message ==
           journal.string() + ": journal record 1 (begin): format 7 is not known, this program writes 1");
+}
+
+TEST_CASE("records that do not fit the job are told, not drawn") {
+    const pliant::test::Folder folder("report");
+    const fs::path file = folder / "job.zip", journal = folder / "job.zip.journal";
+    const machine::Printer printer = plan::test::tower();
+    const job::Manifest m = plan::test::make_job({{0}, {0, 1}}, {"semi-flex", "rigid-flex"});
+    REQUIRE(written(file, m, plan::write_gcode(plan::make_plan(m, printer).value(), m, printer)));
+    const std::string begin = host::write_record(
+        1, "begin",
+        {{"job", "x"}, {"digest", host::job_digest(read_file(file).value())}, {"printer", "tower"}, {"format", "1"}});
+    const auto error_of = [&](const std::string& kind, const host::JournalValues& values) {
+        REQUIRE(write_file(journal, begin + host::write_record(2, kind, values)));
+        const auto page = print_report(file, journal, {});
+        return page ? std::string() : page.error().message;
+    };
+    CHECK(error_of("skip", {{"layer", "1"}}).empty());
+    CHECK(error_of("skip", {{"layer", "2"}}) ==
+          journal.string() + ": journal record 2 (skip): this job has no layer 2");
+    CHECK(error_of("exposure", {{"material", "2"}, {"seconds", "3"}, {"from", "0"}}) ==
+          journal.string() + ": journal record 2 (exposure): this job has no material 2");
+    CHECK(error_of("light", {{"step", "3"}, {"layer", "900"}, {"material", "0"}, {"planned", "2.5"}, {"at", "10"}}) ==
+          journal.string() + ": journal record 2 (light): this job has no exposure of layer 900, material 0 at step 3");
+    machine::Interlock::State state = machine::Interlock(printer).state();
+    state.hooked_vat = 99;
+    CHECK(error_of("go", {{"program", "0"}, {"step", "0"}, {"line", "3"}, {"state", host::write_state(state)}}) ==
+          journal.string() + ": journal record 2 (go): slots or vats that tower prototype does not have");
 }
 
 TEST_CASE("a report compares like times: from the start of the first exposure to the end of the last") {

@@ -131,7 +131,7 @@ private:
         facts_.before_base = *before;
         facts_.boot = *boot;
         facts_.stopped_short = facts_.halted = facts_.was_reset = false;
-        facts_.go = GoFact{-1, 0, *base + 1, *state, 0};
+        facts_.go = GoFact{-1, 0, *base + 1, *state, 0, r.number};
         return {};
     }
     Status program(const JournalRecord& r) {

@@ -246,6 +246,25 @@ TEST_CASE("records about steps, layers and materials that the job does not have 
     CHECK(error_of(facts) == "journal record 6 (light): this job has no exposure of layer 2, material 0 at step 2");
 }
 
+TEST_CASE("a vat that the machine does not have is refused, and its record named") {
+    const auto printer = machine::load_printer("examples/printers/tower.toml").value();
+    const auto error_of = [&](const std::string& kind, const machine::Interlock::State& state) {
+        const std::string word = write_state(state);
+        const JournalRecord session{2, "session", {{"base", "1"}, {"before", "-1"}, {"boot", "a"}, {"state", word}}};
+        const JournalRecord go{3, "go", {{"program", "0"}, {"step", "0"}, {"line", "3"}, {"state", word}}};
+        const JournalFacts facts =
+            facts_of({{1, "begin", {{"job", "a"}, {"digest", ""}, {"printer", "x"}}}, kind == "go" ? go : session})
+                .value();
+        const auto standing = standing_of(facts, {}, printer, 0, {});
+        return standing ? std::string() : standing.error().message;
+    };
+    machine::Interlock::State state = machine::Interlock(printer).state();
+    CHECK(error_of("go", state).empty());
+    state.hooked_vat = 99;
+    CHECK(error_of("go", state) == "journal record 3 (go): slots or vats that tower prototype does not have");
+    CHECK(error_of("session", state) == "journal record 2 (session): slots or vats that tower prototype does not have");
+}
+
 TEST_CASE("what cannot be the beginning of a journal is none, whoever reads it") {
     for (const std::string& text :
          {std::string(1000, '\0'), std::string("name = \"finger\"\n"), std::string("05ec23b6 1 end\r\n")})

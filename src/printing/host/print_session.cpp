@@ -258,6 +258,9 @@ Status Control::Private::check_journal(const JournalFacts& facts) const {
         return input_error("{}: this print was begun on \"{}\", this printer is \"{}\"", where, facts.printer,
                            setup.printer.name);
     if (Status fits = check_fits(facts, script, *job); !fits) return input_error("{}: {}", where, fits.error().message);
+    if (!facts.go) return {};
+    if (const auto known = last_known(facts, setup.printer); !known)
+        return input_error("{}: {}", where, known.error().message);
     return {};
 }
 

@@ -111,10 +111,18 @@ Status check_fits(const JournalFacts& facts, const Script& script, const PrintJo
     return {};
 }
 
+Result<Interlock> last_known(const JournalFacts& facts, const machine::Printer& printer) {
+    auto restored = Interlock::restored(printer, facts.go->state);
+    if (!restored)
+        return input_error("journal record {} ({}): {}", facts.go->record, facts.go->program < 0 ? "session" : "go",
+                           restored.error().message);
+    return restored;
+}
+
 Result<Standing> standing_of(const JournalFacts& facts, const Script& script, const machine::Printer& printer,
                              long last_line, const Assume& assume) {
     if (!facts.go) return Standing{Interlock(printer), false};
-    const auto restored = Interlock::restored(printer, facts.go->state);
+    const auto restored = last_known(facts, printer);
     if (!restored) return tl::unexpected(restored.error());
     const std::vector<std::string> commands = commands_from(*facts.go, facts, script);
     const bool proven = is_proven(facts, last_line, commands.size());

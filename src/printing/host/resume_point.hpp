@@ -17,6 +17,10 @@ namespace pliant::host {
 /// Errors: a record about a step, layer or material that the job does not have.
 [[nodiscard]] Status check_fits(const JournalFacts& facts, const Script& script, const PrintJob& job);
 
+/// The machine where the journal last knows it. Errors: slots or vats that the printer does not have; they name the
+/// record. Precondition: `facts.go`.
+[[nodiscard]] Result<machine::Interlock> last_known(const JournalFacts& facts, const machine::Printer& printer);
+
 /// The machine's present state. `state` has no axis homed if the controller has lost its position.
 struct Standing {
     machine::Interlock state;
