@@ -37,6 +37,7 @@ Result<ThreeMf> Build::assemble(ModelPart start) {
                 "{}object {} is excluded from printing (printable=\"0\") and left out", item.where, item.object));
             continue;
         }
+        ++built_.items;
         if (auto status = place("", item, Transform{}, 0); !status) return tl::unexpected(status.error());
     }
     const auto is_printable = [](const Placed& item) { return item.printable; };

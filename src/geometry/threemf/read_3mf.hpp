@@ -30,6 +30,7 @@ struct Body {
 
 struct ThreeMf {
     std::vector<Body> bodies;           ///< in the order of the build
+    int items = 0;                      ///< of the build, without those that are excluded from printing
     std::vector<std::string> warnings;  ///< each begins with the file's name
 };
 

@@ -69,6 +69,7 @@ TEST_CASE("units, transforms and components place a body; a mirrored one keeps i
     const ThreeMf file =
         read(model(object(7, "") + assembly, "<item objectid=\"8\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 3\"/>"));
     REQUIRE(file.bodies.size() == 2);
+    CHECK(file.items == 1);
     CHECK(file.bodies[0].name == "object 7");
     CHECK(file.bodies[0].material == "default");
     CHECK(mesh::signed_volume(file.bodies[0].mesh_mm) == near(2000.0 / 6, {.relative = 1e-12}));
@@ -132,10 +133,13 @@ TEST_CASE("an item that is excluded from printing is left out, with a note") {
     const std::string two = object(7, "") + object(8, "");
     const ThreeMf file = read(model(two, "<item objectid=\"7\" printable=\"0\"/><item objectid=\"8\"/>"));
     CHECK(file.bodies.size() == 1);
+    CHECK(file.items == 1);
     REQUIRE(file.warnings.size() == 1);
     CHECK(file.warnings[0].find("object 7 is excluded from printing (printable=\"0\") and left out") !=
           std::string::npos);
-    CHECK(read(model(two, "<item objectid=\"7\" printable=\"1\"/><item objectid=\"8\"/>")).bodies.size() == 2);
+    const ThreeMf both = read(model(two, "<item objectid=\"7\" printable=\"1\"/><item objectid=\"8\"/>"));
+    CHECK(both.bodies.size() == 2);
+    CHECK(both.items == 2);
     CHECK(refused(model(two, "<item objectid=\"7\" printable=\"0\"/>")) ==
           "a.3mf: every item of its build is excluded from printing (printable=\"0\")");
 }

@@ -57,6 +57,7 @@ std::vector<slice::OutlineSlice> in_um(const std::vector<threemf::Slice>& slices
 /// `material`: of all bodies; if empty, the file's materials.
 Status add_3mf(threemf::ThreeMf file, const std::string& material, Drawing& drawing) {
     drawing.warnings.insert(drawing.warnings.end(), file.warnings.begin(), file.warnings.end());
+    drawing.items = std::max(drawing.items, file.items);
     for (threemf::Body& body : file.bodies)
         drawing.bodies.push_back({material.empty() ? body.material : material,
                                   mesh::scaled(std::move(body.mesh_mm), um_per_mm), body.name, in_um(body.slices)});

@@ -28,6 +28,7 @@ struct Drawing {
     /// Of materials that stand for a body with an exposure of its own: the material that the body is made of. What is
     /// said of that one holds for these too, unless they are named themselves.
     std::map<std::string, std::string> made_of{};
+    int items = 1;  ///< of the 3MF file with most of them
 };
 
 /// One robot file (.toml), with `assignments` as given by --set; or any number of

@@ -262,13 +262,24 @@ void note_thin(const std::vector<slice::ThinSpot>& thin, const JobSettings& sett
         manifest.warnings.push_back(std::move(line));
 }
 
+void note_pieces(std::size_t pieces, const JobSettings& settings, Manifest& manifest) {
+    if (static_cast<int>(pieces) <= settings.copies) return;
+    const std::string items = settings.items < 2
+                                  ? ""
+                                  : fmt::format(
+                                        ". The 3MF file has {} items, which are printed where they stand in it: "
+                                        "move together there what is one part, or take out what is not to be "
+                                        "printed",
+                                        settings.items);
+    manifest.warnings.push_back(
+        fmt::format("the part falls apart into {} separate pieces; {} expected{}", pieces, settings.copies, items));
+}
+
 void note_findings(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
                    const JobSettings& settings, Manifest& manifest) {
     note_thin(thin, settings, manifest);
     for (std::string& line : describe(findings, settings.slicing.raster)) manifest.warnings.push_back(std::move(line));
-    if (static_cast<int>(findings.pieces.size()) > settings.copies)
-        manifest.warnings.push_back(fmt::format("the part falls apart into {} separate pieces; {} expected",
-                                                findings.pieces.size(), settings.copies));
+    note_pieces(findings.pieces.size(), settings, manifest);
     note_rare_materials(manifest);
     note_volumes(manifest);
 }

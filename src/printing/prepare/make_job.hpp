@@ -40,6 +40,7 @@ struct JobSettings {
     double most_exposure_s = longest_exposure_s;  ///< of any image
     std::string printer{};                        ///< whose limit that is
     int build_height_um = 0;                      ///< of that printer; 0: not known
+    int items = 1;                                ///< that a 3MF file places, each perhaps a part of its own
 };
 
 struct MadeJob {

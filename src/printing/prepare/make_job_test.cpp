@@ -74,6 +74,28 @@ TEST_CASE("a part too tall for the machine is refused before a layer is made") {
     CHECK(layers == 20);
 }
 
+TEST_CASE("separate pieces are told, and that a 3MF file places them as items of its own") {
+    const std::vector<slice::Body> apart{{"soft one", box({-1000, -1000, 0}, {-500, 1000, 500}), ""},
+                                         {"soft one", box({500, -1000, 0}, {1000, 1000, 500}), ""}};
+    JobSettings settings = halves_settings();
+    const auto warnings = [&] {
+        const pliant::test::Folder folder("job");
+        auto writer = Writer::create(folder / "job.zip");
+        REQUIRE(writer.has_value());
+        Progress progress;
+        return slice_to_job(apart, settings, *writer, progress).value().manifest.warnings;
+    };
+    const std::string apart_text = "the part falls apart into 2 separate pieces; 1 expected";
+    CHECK(std::ranges::count(warnings(), apart_text) == 1);
+    settings.items = 2;
+    CHECK(std::ranges::count(warnings(), apart_text +
+                                             ". The 3MF file has 2 items, which are printed where they stand in it: "
+                                             "move together there what is one part, or take out what is not to be "
+                                             "printed") == 1);
+    settings.copies = 2;
+    for (const std::string& warning : warnings()) CHECK(warning.find("falls apart") == std::string::npos);
+}
+
 TEST_CASE("two materials become a job with the right layers, areas and volumes") {
     const pliant::test::Folder folder("job");
     const fs::path path = folder / "job.zip";

@@ -529,6 +529,7 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     if (!printer.projector.grey.empty()) settings.light.grey = slice::grey_values(printer.projector.grey);
     settings.light.mask = std::move(mask);
     settings.copies = order.copies;
+    settings.items = drawing.items;
     settings.most_exposure_s = printer.limits.exposure_s;
     settings.printer = printer.name;
     settings.build_height_um = printer.platform.build_height_um;

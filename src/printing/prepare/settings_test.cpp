@@ -74,6 +74,13 @@ std::string layer_or_error(const std::string& layer, Drawing drawing) {
 
 }  // namespace
 
+TEST_CASE("a drawing's items are those of the job") {
+    Drawing drawing = prepare::test::two_blocks();
+    CHECK(job_settings({}, printer(), {}, drawing).value().items == 1);
+    drawing.items = 3;
+    CHECK(job_settings({}, printer(), {}, drawing).value().items == 3);
+}
+
 TEST_CASE("layer images are printed at the height they were sliced at") {
     const pliant::test::Folder folder("stacks");
     CHECK(layer_or_error("", stacks(folder, "0.1")) == "100");  // not the printer's 50
