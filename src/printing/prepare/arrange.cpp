@@ -127,12 +127,18 @@ Status place(const Order& order, const job::JobSettings& settings, Drawing& draw
     return {};
 }
 
+/// None where nothing is painted.
+Result<std::vector<slice::SupportTouch>> painted(const Order& order) {
+    if (order.support_paint.empty()) return std::vector<slice::SupportTouch>{};
+    if (order.support.empty()) return input_error("--support-paint: needs --support MATERIAL");
+    return read_paint(order.support_paint, order.support_paint_file);
+}
+
 /// Makes painted places follow the part: adds them as points of a body without triangles or material, which is copied
 /// with the part. After each place comes a point one millimetre outwards.
 Status add_paint(const Order& order, Drawing& drawing, std::vector<slice::SupportTouch>& touches) {
     if (order.support_paint.empty()) return {};
-    if (order.support.empty()) return input_error("--support-paint: needs --support MATERIAL");
-    auto read = read_paint(order.support_paint, order.support_paint_file);
+    auto read = painted(order);
     if (!read) return tl::unexpected(read.error());
     touches = std::move(*read);
     slice::Body carrier;
@@ -167,15 +173,22 @@ bool enforces(const std::vector<slice::SupportTouch>& touches) {
 }
 
 /// With a raft the part must be above it, or there is nothing to break away.
-Status lift(const Order& order, double raft_um, Drawing& drawing) {
+Result<double> lift_um(const Order& order, double raft_um) {
     constexpr double usual_um = 5000, most_um = 100000;
     double lift_um = raft_um > 0 ? raft_um + usual_um : 0;
-    if (Status status = read_lengths({{"--lift", &order.lift, &lift_um}}); !status) return status;
+    if (Status status = read_lengths({{"--lift", &order.lift, &lift_um}}); !status)
+        return tl::unexpected(status.error());
     if (!(lift_um >= 0 && lift_um <= most_um)) return input_error("--lift {}: must be 0 to 100 mm", order.lift);
     if (raft_um > 0 && lift_um < raft_um + 500)
         return input_error("--lift {}: must be at least half a millimetre more than the raft of {:.6g} mm", order.lift,
                            raft_um / 1000);
-    for (slice::Body& body : drawing.bodies) slice::move(body, {0, 0, lift_um});
+    return lift_um;
+}
+
+Status lift(const Order& order, double raft_um, Drawing& drawing) {
+    const Result<double> height_um = lift_um(order, raft_um);
+    if (!height_um) return tl::unexpected(height_um.error());
+    for (slice::Body& body : drawing.bodies) slice::move(body, {0, 0, *height_um});
     return {};
 }
 
@@ -256,6 +269,15 @@ Status check_companions(const Order& order) {
     }
     if (order.hollow.empty() && !order.drain.empty()) return input_error("--drain: needs --hollow");
     return {};
+}
+
+Status check_supports(const Order& order) {
+    if (const auto touches = painted(order); !touches) return tl::unexpected(touches.error());
+    if (order.support.empty()) return {};
+    const Result<slice::SupportSettings> settings = support_settings(order);
+    if (!settings) return tl::unexpected(settings.error());
+    const Result<double> height_um = lift_um(order, settings->raft_um);
+    return height_um ? Status() : tl::unexpected(height_um.error());
 }
 
 Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,

@@ -13,26 +13,29 @@
 namespace pliant::prepare {
 namespace {
 
-/// Removes what an estimate does not include. A length or angle that cannot be read is an error all the same.
-Status leave_out_slow(Order& order) {
+/// What an estimate does not include is an error all the same if it cannot be read.
+Status check_slow(const Order& order) {
     if (Status status = check_companions(order); !status) return status;
-    for (const auto& [option, text] : {std::pair{"--support-spacing", &order.support_spacing},
-                                       {"--support-tip", &order.support_tip},
-                                       {"--support-pillar", &order.support_pillar},
-                                       {"--lift", &order.lift},
-                                       {"--raft", &order.raft},
-                                       {"--hollow", &order.hollow},
-                                       {"--drain", &order.drain},
-                                       {"--least-layer", &order.least_layer}}) {
+    for (const auto& [option, text] :
+         {std::pair{"--hollow", &order.hollow}, {"--drain", &order.drain}, {"--least-layer", &order.least_layer}}) {
         if (const auto length = length_um(option, *text, 0); !length) return tl::unexpected(length.error());
+    }
+    return check_supports(order);
+}
+
+/// Removes what an estimate does not include, and the material that would be printed in supports alone.
+void leave_out_slow(const Drawing& drawing, Order& order, job::JobSettings& settings) {
+    const auto printed = [&](const job::Material& material) {
+        return std::ranges::any_of(drawing.bodies, [&](const slice::Body& body) {
+            return body.material == material.name || (body.blend && body.blend->second == material.name);
+        });
+    };
+    std::erase_if(settings.materials,
+                  [&](const job::Material& material) { return material.name == order.support && !printed(material); });
+    for (std::string* text :
+         {&order.support, &order.support_angle, &order.support_spacing, &order.support_tip, &order.support_pillar,
+          &order.support_paint, &order.lift, &order.raft, &order.hollow, &order.drain, &order.least_layer})
         text->clear();
-    }
-    if (!order.support_angle.empty()) {
-        const auto angle = plain_degrees("--support-angle", order.support_angle);
-        if (!angle) return tl::unexpected(angle.error());
-    }
-    for (std::string* text : {&order.support, &order.support_angle, &order.support_paint}) text->clear();
-    return {};
 }
 
 int material_of(const job::Manifest& manifest, const std::string& name) {
@@ -127,10 +130,11 @@ job::Manifest empty_job(const job::JobSettings& settings, double height_um) {
 
 Result<plan::Plan> estimate(Order order, const machine::Printer& printer, Drawing drawing) {
     if (!drawing.stacks.empty()) return input_error("layer images are planned when they are sliced: no estimate");
-    if (Status status = leave_out_slow(order); !status) return tl::unexpected(status.error());
+    if (Status status = check_slow(order); !status) return tl::unexpected(status.error());
     const Result<job::JobSettings> read = job_settings(order, printer, std::nullopt, drawing);
     if (!read) return tl::unexpected(read.error());
     job::JobSettings settings = *read;
+    leave_out_slow(drawing, order, settings);
     std::vector<std::string> notes;
     Progress silent;
     if (Status placed = arrange(order, settings, drawing, notes, silent); !placed)

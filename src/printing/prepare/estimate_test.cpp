@@ -98,6 +98,47 @@ TEST_CASE("an order that lacks the support or the hollow that an option belongs 
     CHECK(problem([](Order& o) { o.hollow = o.drain = "1 mm"; }).empty());
 }
 
+TEST_CASE("supports that cannot be sliced have no estimate, for the same reason") {
+    const pliant::test::Folder folder;
+    const PrinterFile printer = tower();
+    const auto problem = [&](const std::function<void(Order&)>& change) {
+        Order order;
+        order.inputs = {"blocks"};
+        order.layer = "100 um";
+        order.support = "soft";
+        change(order);
+        Progress silent;
+        const auto guess = estimate(order, printer.printer, blocks());
+        const auto made = slice_job(order, printer, blocks(), folder / "blocks.zip", silent);
+        CHECK((guess ? "" : guess.error().message) == (made ? "" : made.error().message));
+        return guess ? std::string() : guess.error().message;
+    };
+    const std::string header = "wish,x (mm),y (mm),z (mm),nx,ny,nz,radius (mm)\n";
+    CHECK(problem([](Order& o) { o.support = "nothing"; }).starts_with("--support nothing: is neither a material"));
+    CHECK(problem([](Order& o) { o.support_paint = "wish,x (mm)\nblock,1\n"; }).starts_with("supports:1: "));
+    CHECK(problem([&](Order& o) { o.support_paint = header + "enforce,1,2,0,0,0,0,1\n"; }).starts_with("supports:2: "));
+    CHECK(problem([](Order& o) { o.support = "", o.support_paint = "x"; }) ==
+          "--support-paint: needs --support MATERIAL");
+    CHECK_FALSE(problem([](Order& o) { o.support_angle = "100"; }).empty());
+    CHECK_FALSE(problem([](Order& o) { o.support_tip = "900 mm"; }).empty());
+    CHECK_FALSE(problem([](Order& o) { o.raft = "1 mm", o.lift = "1 mm"; }).empty());
+    CHECK(problem([&](Order& o) { o.support_paint = header + "block,1,2,0,0,0,-1,1\n"; }).empty());
+}
+
+TEST_CASE("a resin of supports alone is allowed for an estimate, and takes no vat in it") {
+    Order order;
+    order.inputs = {"blocks"};
+    order.layer = "100 um";
+    const auto usual = estimate(order, tower().printer, blocks());
+    REQUIRE(usual);
+    order.support = "scaffold";
+    order.resins = {"scaffold=tough"};
+    const auto guess = estimate(order, tower().printer, blocks());
+    REQUIRE_MESSAGE(guess, (guess ? "" : guess.error().message));
+    CHECK(guess->vats.size() == usual->vats.size());
+    CHECK(guess->seconds.total == usual->seconds.total);
+}
+
 TEST_CASE("the estimate of a real robot is close to the plan of its sliced job") {
     const pliant::test::Folder folder;
     const PrinterFile printer = tower();

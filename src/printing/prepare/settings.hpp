@@ -22,6 +22,9 @@ namespace pliant::prepare {
 /// Errors: an option that says something only beside another one, without it: `raft` without `support`.
 [[nodiscard]] Status check_companions(const Order& order);
 
+/// Errors that arrange() finds in the options of supports, apart from what they have to do with the part.
+[[nodiscard]] Status check_supports(const Order& order);
+
 /// Rotates the part, arranges its copies, places them on the platform (or above it, on supports), sets layer heights,
 /// hollows the part and adds supports, as far as the order asks for it. `notes` gets lines that describe the result.
 [[nodiscard]] Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,

@@ -158,12 +158,12 @@ Result<SliceOrder> read_order(Studio& studio, const Request& request) {
     Result<prepare::PrinterFile> printer = read_printer(studio.folder(), *name);
     if (!printer) return tl::unexpected(printer.error());
     Studio::Document d = studio.document();
-    // A robot of its own, as from a wizard, is not the document and has no file.
+    // A robot of its own, as from a wizard, is not the document and has no file: errors name the key of the body.
     const Result<std::optional<std::string>> own = robot_text_of(request.body);
     if (!own) return tl::unexpected(own.error());
     if (*own) {
         d.text = **own;
-        d.file = studio.folder().path() / "test.toml";
+        d.file = studio.folder().path() / "robot";
         d.outside.clear();
     }
     // A file on which the robot is based may have changed since the robot was opened.

@@ -661,7 +661,10 @@ TEST_CASE("a robot is sliced, its layers and plan can be read, and slicing can b
     CHECK(problem(R"({"printer":"tower","layer":"thick"})").starts_with("--layer: "));
     CHECK(problem(R"({"printer":"tower","support":"soft","support-tip":"9 apples"})").starts_with("--support-tip: "));
     CHECK(problem(R"({"printer":"tower","support":"soft","support-angle":"steep"})").starts_with("--support-angle "));
-    CHECK(problem(R"({"printer":"tower","robot":"name = 3"})").starts_with("test.toml:"));  // without the folder
+    CHECK(problem(R"({"printer":"tower","support":"nothing"})").starts_with("--support nothing: is neither "));
+    CHECK(
+        problem(R"({"printer":"tower","support":"soft","support-paint":"wish\nblock\n"})").starts_with("supports:1: "));
+    CHECK(problem(R"({"printer":"tower","robot":"name = 3"})").starts_with("robot:1: "));  // of the body: no file
     CHECK(ask(studio, "POST", "/api/job/save", R"({"name":"bar.zip"})").status == 200);
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"bar.zip"})").status == 200);
 
