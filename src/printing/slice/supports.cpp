@@ -322,7 +322,7 @@ private:
             if (!columns.back().on_part) feet.push_back({pillars.back().x_um, pillars.back().y_um});
             ++supports.tips;
         }
-        const Braces tied = braces(pillars, settings_.raster.pixel_um, [&](const Strut& s) { return meets_part(s); });
+        const Braces tied = braces(pillars, least_strut_um(), [&](const Strut& s) { return meets_part(s); });
         for (std::size_t i = 0; i < columns.size(); ++i) {
             if (!tied.held[i]) columns[i].foot_r = std::max(columns[i].foot_r, lone_foot_um(pillars[i]) / 2);
             const Pillar& p = pillars[i];
@@ -333,6 +333,14 @@ private:
         if (wanted_.raft_um > 0 && !feet.empty())
             supports.bodies.push_back(filler(hull_prism(feet, 2 * wanted_.pillar_um, 0, wanted_.raft_um)));
         return supports;
+    }
+
+    /// Radius at which a strut, which rises at 45 degrees, stands on itself in the thickest layer.
+    [[nodiscard]] double least_strut_um() const {
+        int thickest_um = 0;
+        for (int k = 0; k < static_cast<int>(solids_.size()); ++k)
+            thickest_um = std::max(thickest_um, layers_.thickness_um(k));
+        return std::max<double>(settings_.raster.pixel_um, thickest_um / 2.0);
     }
 
     /// Allows twice the slenderness of a braced pillar.

@@ -293,3 +293,19 @@ TEST_CASE("tall supports are braced, braces need no support, and a single pillar
         CHECK((box.low.y > 0 || box.high.y < 0));
     }
 }
+
+TEST_CASE("braces hold themselves in layers that are thicker than a pillar") {
+    const auto tips_of = [](double lift_um) {
+        Progress progress;
+        const std::vector<Body> plate{{"soft", box({-5000, -3000, lift_um}, {5000, 3000, lift_um + 2000}), ""}};
+        auto made = make_supports(plate, {{200, 160, 100}, 1000, {}}, in_wax(), progress);
+        REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+        CHECK(made->islands_left == 0);
+        return std::pair(made->tips, made->struts);
+    };
+    const auto [low_tips, low_struts] = tips_of(4000);
+    const auto [high_tips, high_struts] = tips_of(40000);
+    CHECK(low_struts == 0);
+    CHECK(high_struts > 0);
+    CHECK(high_tips == low_tips);  // none under the struts
+}
