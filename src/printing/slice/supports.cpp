@@ -335,12 +335,13 @@ private:
         return supports;
     }
 
-    /// Radius at which a strut, which rises at 45 degrees, stands on itself in the thickest layer.
+    /// Radius of a strut that stands on itself: it rises at 45 degrees, so that its circle moves by the thickness of a
+    /// layer from one layer to the next. Two pixels of it remain above itself in the thickest one.
     [[nodiscard]] double least_strut_um() const {
         int thickest_um = 0;
         for (int k = 0; k < static_cast<int>(solids_.size()); ++k)
             thickest_um = std::max(thickest_um, layers_.thickness_um(k));
-        return std::max<double>(settings_.raster.pixel_um, thickest_um / 2.0);
+        return settings_.raster.pixel_um + thickest_um / 2.0;
     }
 
     /// Allows twice the slenderness of a braced pillar.
