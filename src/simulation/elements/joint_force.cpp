@@ -38,7 +38,8 @@ std::vector<RowOf> rows_of(Joint::Kind kind, double arm) {
             {{-2, 1, 0, 0}, {2, -1, 0, 0}},
             {{-a, 0, a, 0}, {0, 0, 0, 0}},
             {{-a, 0, 0, a}, {0, 0, 0, 0}},
-            {{0, 0, 0, 0}, {-a, 0, a, 0}}};
+            {{0, 0, 0, 0}, {-a, 0, a, 0}},
+            {{0, 0, 0, 0}, {-a, 0, 0, a}}};
 }
 
 Eigen::Index place_in(std::vector<int>& nodes, int node) {
@@ -111,26 +112,25 @@ JointForce::Vectors JointForce::vectors(std::span<const double> x) const {
 }
 
 JointForce::Coordinate JointForce::angle_of(const Vectors& y, bool with_hessian) const {
-    const Vector3 u = y.col(2), v = y.col(3), w = y.col(4);
-    const double a = u.dot(w), b = v.dot(w), r2 = a * a + b * b;
+    const Vector3 u = y.col(2), v = y.col(3), w = y.col(4), z = y.col(5);
+    const double a = u.dot(w) + v.dot(z), b = v.dot(w) - u.dot(z), r2 = a * a + b * b;
     const double by_a = -b / r2, by_b = a / r2;
-    Coordinate q{std::atan2(b, a), Vectors::Zero(3, y.cols()), {}};
-    q.gradient.col(2) = by_a * w;
-    q.gradient.col(3) = by_b * w;
-    q.gradient.col(4) = by_a * u + by_b * v;
+    Vectors da = Vectors::Zero(3, y.cols()), db = da;
+    da.rightCols<4>() << w, z, u, v;
+    db.rightCols<4>() << -z, w, v, -u;
+    Coordinate q{std::atan2(b, a), by_a * da + by_b * db, {}};
     if (!with_hessian) return q;
-    Eigen::VectorXd da = Eigen::VectorXd::Zero(3 * y.cols()), db = da;
-    da.segment<3>(6) = w;
-    da.segment<3>(12) = u;
-    db.segment<3>(9) = w;
-    db.segment<3>(12) = v;
     const double aa = 2 * a * b / (r2 * r2), ab = (b * b - a * a) / (r2 * r2);
-    q.hessian = aa * (da * da.transpose() - db * db.transpose()) + ab * (da * db.transpose() + db * da.transpose());
-    const Matrix3 one = Matrix3::Identity();
-    q.hessian.block<3, 3>(6, 12) += by_a * one;
-    q.hessian.block<3, 3>(12, 6) += by_a * one;
-    q.hessian.block<3, 3>(9, 12) += by_b * one;
-    q.hessian.block<3, 3>(12, 9) += by_b * one;
+    const Eigen::VectorXd A = da.reshaped(), B = db.reshaped();
+    q.hessian = aa * (A * A.transpose() - B * B.transpose()) + ab * (A * B.transpose() + B * A.transpose());
+    const auto add = [&](Eigen::Index first, Eigen::Index second, double factor) {
+        q.hessian.block<3, 3>(3 * first, 3 * second) += factor * Matrix3::Identity();
+        q.hessian.block<3, 3>(3 * second, 3 * first) += factor * Matrix3::Identity();
+    };
+    add(2, 4, by_a);
+    add(3, 5, by_a);
+    add(3, 4, by_b);
+    add(2, 5, -by_b);
     return q;
 }
 

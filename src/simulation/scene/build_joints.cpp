@@ -171,7 +171,13 @@ Vec3 any_normal(const Vec3& axis) {
     return unit(cross(axis, other));
 }
 
-/// The arms, the joint's axis first. For glue on a flat plate the first two lie in the plate.
+/// True for a flat plate in which a direction normal to the axis can be chosen.
+bool has_direction(const End& end, const Vec3& axis) {
+    constexpr double along_normal = 1e-3;
+    return end.normal && norm(cross(*end.normal, axis)) > along_normal;
+}
+
+/// The arms, the joint's axis first. On a flat plate the second lies in the plate, and for glue the first, too.
 std::array<Vec3, 3> arms(const JointSpec& spec, const std::array<End, 2>& ends) {
     Vec3 first = unit(spec.axis);
     if (spec.kind == JointSpec::Kind::glue) {
@@ -179,11 +185,18 @@ std::array<Vec3, 3> arms(const JointSpec& spec, const std::array<End, 2>& ends) 
             if (end.normal) first = any_normal(*end.normal);
     }
     Vec3 second = any_normal(first);
-    if (spec.kind == JointSpec::Kind::glue) {
-        for (const End& end : ends)
-            if (end.normal) second = cross(*end.normal, first);
-    }
+    for (const End& end : ends)
+        if (has_direction(end, first)) second = unit(cross(*end.normal, first));
     return {first, second, cross(first, second)};
+}
+
+/// A hinge takes its angle on a flat plate from the direction in the plate alone, which is rigid: the third arm is off
+/// the plate, where only the soft material beside it would resist the torque.
+void take_angle_in_plate(const std::array<End, 2>& ends, const Vec3& axis, sim::Joint& joint) {
+    const bool first = has_direction(ends[0], axis), second = has_direction(ends[1], axis);
+    if (joint.kind != sim::Joint::Kind::hinge || first == second) return;
+    std::array<sim::Attachment, 4>& points = first ? joint.first : joint.second;
+    points[3] = points[0];
 }
 
 double stiffness(const sim::Description& d, double arm_m) {
@@ -259,6 +272,7 @@ void add_joint(ModelDraft& draft, const JointSpec& spec) {
         joint.first[p] = ends[0].patch.at(place);
         joint.second[p] = ends[1].patch.at(place);
     }
+    take_angle_in_plate(ends, directions[0], joint);
     joint.stiffness_N_m = stiffness(draft.description, joint.arm_m);
     joint.law = law_of(spec);
     joint.objects = {ends[0].object, ends[1].object};
