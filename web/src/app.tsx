@@ -55,14 +55,16 @@ function Open() {
   };
   const d = documentState.value;
   const other = otherJob();
+  const title = other || (scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot'));
+  const beside = other ? `job; the robot is ${d.title}` : d.title;
   const box = useRef<HTMLDivElement>(null);
   useDismiss(project !== null, () => setProject(null), box);
   const own = (project?.files ?? []).filter((f) => !project!.printers.includes(f));
   return (
     <div class="menu" ref={box}>
-      <button class="document" aria-expanded={project !== null} onClick={toggle} data-testid="open">
-        <span class="title">{other || (scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot'))}</span>
-        <span class="quiet">{other ? `job; the robot is ${d.title}` : d.title}</span>
+      <button class="document" aria-expanded={project !== null} onClick={toggle} title={beside ? `${title} · ${beside}` : title} data-testid="open">
+        <span class="title">{title}</span>
+        <span class="quiet">{beside}</span>
         {d.unsaved && <span class="unsaved">unsaved</span>}
       </button>
       {project && (

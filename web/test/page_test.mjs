@@ -842,6 +842,24 @@ test('at every width the bar says that the robot is not saved', async (t) => {
   assert.deepEqual(wrong, []);
 });
 
+test('a long name of a robot leaves room for that of its file, and both can be read in full', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.setViewportSize({ width: 1200, height: 844 });
+  const long = 'a name that goes on and on, '.repeat(4).trim();
+  await page.evaluate((robot) => {
+    const s = window.pliant.scene.value;
+    window.pliant.scene.value = { ...s, head: { ...s.head, robot } };
+    window.pliant.documentState.value = { ...window.pliant.documentState.value, title: 'hand.toml' };
+  }, long);
+  const bar = page.getByTestId('open');
+  await says(bar.locator('.title'), new RegExp(`^${long}$`));
+  assert.ok(await bar.locator('.quiet').evaluate((e) => e.clientWidth > 40 && e.scrollWidth <= e.clientWidth), 'the file is named in full');
+  assert.ok(await bar.locator('.title').evaluate((e) => e.clientWidth > 100), 'the robot has room too');
+  assert.equal(await bar.getAttribute('title'), `${long} · hand.toml`);
+  assert.deepEqual(wrong, []);
+});
+
 test('on a phone the hints cover none of what they speak of', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
   const hint = page.getByTestId('hint');
