@@ -6,10 +6,11 @@
 namespace pliant::python {
 namespace {
 
-const char* class_of(Failure::Kind kind) {
+/// A class of pliant.errors, or a function that chooses one.
+const char* maker_of(Failure::Kind kind) {
     switch (kind) {
         case Failure::Kind::input:
-            return "InputError";
+            return "input_error";
         case Failure::Kind::cancelled:
             return "Cancelled";
         case Failure::Kind::failed:
@@ -26,10 +27,10 @@ py::object decoded(const std::string& bytes) {
 
 void raise(const Failure& failure) {
     try {
-        const py::object type = py::module_::import("pliant.errors").attr(class_of(failure.kind()));
+        const py::object make = py::module_::import("pliant.errors").attr(maker_of(failure.kind()));
         const py::object error =
-            type(decoded(failure.what()), decoded(failure.file()), failure.line(), decoded(failure.key()));
-        PyErr_SetObject(type.ptr(), error.ptr());
+            make(decoded(failure.what()), decoded(failure.file()), failure.line(), decoded(failure.key()));
+        PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
     } catch (py::error_already_set& error) {
         error.restore();
     }

@@ -16,7 +16,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import _pliant
-from .errors import Cancelled, Failure, InputError
+from .errors import Cancelled, Failure, InputError, MissingFile
 
 if TYPE_CHECKING:
     from ._pliant import StepResult
@@ -40,12 +40,12 @@ __version__ = _pliant.version()
 __all__ = [
     "Batch", "Cable", "Cancelled", "Chamber", "Change", "Comparison", "CuredBlock", "Drive", "Estimate", "Failure",
     "Fields", "FitError", "GoalResult", "Gradient", "GuidePoint", "Identification", "InputError", "Inputs",
-    "InverseResult", "Joint", "KeySensitivity", "Linearisation", "Measure", "Mesh", "Model", "Object", "Observation",
-    "Parameter", "PrintPlan", "ProgramGradient", "ProgramResult", "ProgramStep", "ReducedCheck", "ReducedError",
-    "ReducedModel", "ReducedState", "ReducedStep", "Robot", "SobolIndex", "Spring", "State", "SteeredInput",
-    "StepResult", "StudyResult", "Vat", "Viewer", "VirtualPrint",
-    "Waypoint", "Workspace", "check", "gradient", "identify", "inverse", "plan", "print_virtually", "quantity",
-    "reduce", "show", "slice", "study", "workspace",
+    "InverseResult", "Joint", "KeySensitivity", "Linearisation", "Measure", "Mesh", "MissingFile", "Model", "Object",
+    "Observation", "Parameter", "PrintPlan", "ProgramGradient", "ProgramResult", "ProgramStep", "ReducedCheck",
+    "ReducedError", "ReducedModel", "ReducedState", "ReducedStep", "Robot", "SobolIndex", "Spring", "State",
+    "SteeredInput", "StepResult", "StudyResult", "Vat", "Viewer", "VirtualPrint", "Waypoint", "Workspace", "check",
+    "gradient", "identify", "inverse", "plan", "print_virtually", "quantity", "reduce", "show", "slice", "study",
+    "workspace",
 ]  # fmt: skip
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -35,10 +37,40 @@ class InputError(Failure, ValueError):
     kind = "input"
 
 
+class MissingFile(FileNotFoundError, InputError):
+    """A file that was named is not there: what Python itself raises, with `errno` and `filename`."""
+
+    def __init__(self, message: str, file: str = "", line: int = 0, key: str = "") -> None:
+        FileNotFoundError.__init__(self, errno.ENOENT, os.strerror(errno.ENOENT), file)
+        self._message = message
+        self.file = file
+        self.line = line
+        self.key = key
+
+    def __str__(self) -> str:
+        return self._message
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Failure.__reduce__(self)
+
+
 class Cancelled(Failure):
     """The work was cancelled by a progress callable."""
 
     kind = "cancelled"
+
+
+#: How the library tells that a file is not there.
+_MISSING = ": no such file"
+
+
+def input_error(message: str, file: str = "", line: int = 0, key: str = "") -> InputError:
+    """The error for what the library tells: one about a file that it does not find is a `MissingFile`. A file that a
+    robot file names is a mistake in that one, at a line and a key."""
+    named = message[: -len(_MISSING)] if message.endswith(_MISSING) else ""
+    if named and not line and not key and (named == file or (not file and ": " not in named)):
+        return MissingFile(message, named)
+    return InputError(message, file, line, key)
 
 
 @contextmanager

@@ -13,7 +13,7 @@ import numpy as np
 from . import _check, _pliant
 from ._check import Array, PathLike, Progress
 from ._values import NotPickled
-from .errors import InputError
+from .errors import InputError, MissingFile
 from .robot import Mesh, Robot
 
 
@@ -197,6 +197,8 @@ def _read(path: Path) -> str:
         raise InputError(f"{path}: is a folder, a file is needed", file=str(path))
     try:
         return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise MissingFile(f"{path}: no such file", str(path)) from None
     except (OSError, UnicodeDecodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "is not a text in UTF-8"
         raise InputError(f"{path}: {why}", file=str(path)) from None

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from . import _check, _toml
 from ._values import Value
-from .errors import Cancelled, Failure, InputError, arguments_for_options
+from .errors import Cancelled, Failure, InputError, arguments_for_options, input_error
 
 
 class SobolIndex(NamedTuple):
@@ -202,7 +202,7 @@ def _complain(status: int, told: dict[str, Any], errors: str) -> None:
     message = str(told["error"]) if "error" in told else lines[-1] if lines else ended
     with arguments_for_options(_ARGUMENTS):
         if status == 2:
-            raise InputError(message)
+            raise input_error(message)
         raise (Cancelled if message.startswith("cancelled") else Failure)(message)
 
 

@@ -24,7 +24,7 @@ def test_nothing_heavy_is_imported_before_it_is_used():
 
 def test_names_imported_on_use_are_those_that_the_type_checker_knows():
     assert pliant._NAMES_OF == names_for_the_type_checker()
-    at_once = {"Cancelled", "Failure", "InputError", "quantity"}
+    at_once = {"Cancelled", "Failure", "InputError", "MissingFile", "quantity"}
     assert {*pliant._FILE_OF, *at_once} == {*pliant.__all__}
 
 

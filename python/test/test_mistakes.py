@@ -1,5 +1,6 @@
 """What people get wrong ends in one sentence, with its place."""
 
+import errno
 import os
 import pickle
 
@@ -315,6 +316,29 @@ def test_errors_have_file_line_and_key(tmp_path):
     with pytest.raises(pliant.InputError, match="^robot text:1: name: ") as caught:
         pliant.Robot.parse("name = 3")
     assert (caught.value.file, caught.value.line, caught.value.key) == ("", 1, "name") and "/" not in str(caught.value)
+
+
+def test_a_missing_file_is_what_python_raises_for_one(tmp_path):
+    nowhere = str(tmp_path / "nowhere")
+    for file, act in {
+        nowhere + ".toml": pliant.Robot.load,
+        nowhere + ".zip": pliant.plan,
+        nowhere + ".csv": lambda file: pliant.identify(bar().robot, ["material.soft.youngs_modulus"], file),
+    }.items():
+        with pytest.raises(FileNotFoundError) as caught:
+            act(file)
+        error = caught.value
+        assert (error.errno, error.filename, error.file) == (errno.ENOENT, file, file)
+        assert str(error) == f"{file}: no such file"
+        assert isinstance(error, pliant.InputError) and error.kind == "input"
+        again = pickle.loads(pickle.dumps(error))
+        assert type(again) is pliant.MissingFile and (str(again), again.filename) == (str(error), file)
+
+
+def test_a_file_that_a_robot_names_is_a_mistake_in_the_robot():
+    with pytest.raises(pliant.InputError, match="there is no file .*nowhere.stl") as caught:
+        pliant.Robot(body(geometry="nowhere.stl"))
+    assert caught.value.key == "body[0].geometry" and not isinstance(caught.value, OSError)
 
 
 def test_errors_of_a_changed_robot_name_the_file_that_it_was_read_from(tmp_path):
