@@ -12,7 +12,7 @@ function skip(why) {
 
 const web = process.env.PLIANT_WEB ?? new URL('..', import.meta.url).pathname;
 if (Number(process.versions.node.split('.')[0]) < 18) skip('node 18 or newer is needed');
-const all = ['units', 'wire', 'page', 'simulate', 'print', 'machine', 'front', 'tasks', 'prepare', 'resume', 'wizard', 'stranger', 'truth', 'axe', 'visual'];
+const all = ['units', 'wire', 'page', 'simulate', 'keyboard', 'print', 'machine', 'front', 'tasks', 'prepare', 'resume', 'wizard', 'stranger', 'truth', 'axe', 'visual'];
 const named = process.argv.length > 2 ? process.argv.slice(2) : all;
 const browser = named.some((name) => name !== 'units');
 for (const needed of browser ? ['playwright-core', 'axe-core'] : ['esbuild'])

@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, readRobot, settled, startBrowser, startStudio, typeRobot } from './studio.mjs';
-import { boxStl } from './shapes.mjs';
+import { block, boxStl } from './shapes.mjs';
 
 const example = (name) => new URL(`../../examples/${name}`, import.meta.url).pathname;
 const long = { timeout: 120_000 };
@@ -25,42 +25,6 @@ after(async () => {
   assert.equal(await studio?.stop(), 0);
   rmSync(folder, { recursive: true, force: true });
 });
-
-/// A robot that is solved in a moment, with a cavity of its own.
-function block(modulus) {
-  return `name = "block"
-length_unit = "mm"
-
-[parameters]
-length = 40   # along x
-
-[material.soft]
-youngs_modulus = "${modulus}"
-poisson_ratio = 0.45
-
-[[body]]
-name = "block"
-material = "soft"
-geometry = { difference = [{ box = [[0, 0, 0], ["= length", 12, 12]] }, { box = [[8, 4, 4], [20, 8, 8]] }] }
-
-[mesh]
-size = "6 mm"
-order = 1
-
-[[fixed]]
-name = "clamp"
-box = [[0, 0, 0], [0, 12, 12]]
-
-[[cable]]
-name = "flexor"
-points = [[0, 6, 11], [20, 6, 11], [40, 6, 11]]
-target = { shortening = "1 mm" }
-
-[[marker]]
-name = "tip"
-point = ["= length", 6, 6]
-`;
-}
 
 const revision = (page) => page.evaluate(() => window.pliant.scene.value?.head.revision ?? 0);
 /// Does it, and waits until the robot has been built anew and is at equilibrium.

@@ -1,11 +1,11 @@
 // The text of the robot file, with syntax colours, errors at their lines, and completion of keys.
 import { autocompletion, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete';
-import { defaultKeymap, history, historyKeymap, indentWithTab } from '@codemirror/commands';
+import { defaultKeymap, history, historyKeymap, indentWithTab, isolateHistory } from '@codemirror/commands';
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language';
 import { toml } from '@codemirror/legacy-modes/mode/toml';
 import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint';
 import { highlightSelectionMatches, searchKeymap } from '@codemirror/search';
-import { EditorState, Transaction } from '@codemirror/state';
+import { EditorState } from '@codemirror/state';
 import { drawSelection, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
 import { tags } from '@lezer/highlight';
 import { effect, type Signal } from '@preact/signals';
@@ -62,58 +62,77 @@ function diagnostics(state: EditorState, problems: Problem[]): Diagnostic[] {
 
 interface Props {
   text: Signal<string>;
+  /// Changes when the text of another robot takes the place of this one.
+  origin: Signal<unknown>;
   problems: Signal<Problem[]>;
   readOnly: boolean;
   onApply: () => void;
+  onSave: () => void;
 }
 
-export function CodeArea({ text, problems, readOnly, onApply }: Props) {
+const extensions = ({ text, readOnly, onApply, onSave }: Props) => [
+  lineNumbers(),
+  history(),
+  drawSelection(),
+  highlightActiveLine(),
+  highlightSelectionMatches(),
+  StreamLanguage.define(toml),
+  syntaxHighlighting(colours),
+  autocompletion({ override: [complete] }),
+  lintGutter(),
+  keymap.of([{ key: 'Mod-Enter', run: () => (onApply(), true) }, { key: 'Mod-s', preventDefault: true, run: () => (onSave(), true) }, ...defaultKeymap, ...historyKeymap, ...searchKeymap, indentWithTab]),
+  look,
+  EditorState.readOnly.of(readOnly),
+  EditorView.contentAttributes.of({ 'aria-label': 'Robot file', 'aria-describedby': 'editor-keys', 'data-testid': 'robot-file', tabindex: '0' }),
+  EditorView.updateListener.of((u) => u.docChanged && (text.value = u.state.doc.toString())),
+];
+
+/// What was changed outside of the editor is a step of its own in its history, so that the steps before it are undone
+/// in the text that they belong to.
+function replace(view: EditorView, next: string) {
+  const now = view.state.doc.toString();
+  if (next === now) return;
+  let [begin, end] = [0, 0];
+  while (begin < Math.min(next.length, now.length) && next[begin] === now[begin]) ++begin;
+  while (end < Math.min(next.length, now.length) - begin && next[next.length - 1 - end] === now[now.length - 1 - end]) ++end;
+  view.dispatch({ changes: { from: begin, to: now.length - end, insert: next.slice(begin, next.length - end) }, annotations: isolateHistory.of('full') });
+}
+
+function mark(view: EditorView, problems: Problem[]) {
+  const first = problems.find((p) => p.line > 0 && p.line <= view.state.doc.lines);
+  view.dispatch(setDiagnostics(view.state, diagnostics(view.state, problems)));
+  if (first && !view.hasFocus) view.dispatch({ effects: EditorView.scrollIntoView(view.state.doc.line(first.line).from, { y: 'center' }) });
+}
+
+export function CodeArea(props: Props) {
+  const { text, origin, problems, readOnly } = props;
   const box = useRef<HTMLDivElement>(null);
-  const view = useRef<EditorView | null>(null);
   useEffect(() => {
-    const made = (view.current = new EditorView({
-      parent: box.current!,
-      state: EditorState.create({
-        doc: text.peek(),
-        extensions: [
-          lineNumbers(),
-          history(),
-          drawSelection(),
-          highlightActiveLine(),
-          highlightSelectionMatches(),
-          StreamLanguage.define(toml),
-          syntaxHighlighting(colours),
-          autocompletion({ override: [complete] }),
-          lintGutter(),
-          keymap.of([{ key: 'Mod-Enter', run: () => (onApply(), true) }, ...defaultKeymap, ...historyKeymap, ...searchKeymap, indentWithTab]),
-          look,
-          EditorState.readOnly.of(readOnly),
-          EditorView.contentAttributes.of({ 'aria-label': 'Robot file', 'data-testid': 'robot-file', tabindex: '0' }),
-          EditorView.updateListener.of((u) => u.docChanged && (text.value = u.state.doc.toString())),
-        ],
-      }),
-    }));
+    /// Without a history: nothing that was done to the text of another robot can be undone in this one.
+    const fresh = () => EditorState.create({ doc: text.peek(), extensions: extensions(props) });
+    const view = new EditorView({ parent: box.current!, state: fresh() });
+    let shown = origin.peek();
     const stops = [
-      // External changes are not part of the undo history.
       effect(() => {
         const next = text.value;
-        const now = made.state.doc.toString();
-        if (next === now) return;
-        let [begin, end] = [0, 0];
-        while (begin < Math.min(next.length, now.length) && next[begin] === now[begin]) ++begin;
-        while (end < Math.min(next.length, now.length) - begin && next[next.length - 1 - end] === now[now.length - 1 - end]) ++end;
-        made.dispatch({ changes: { from: begin, to: now.length - end, insert: next.slice(begin, next.length - end) }, annotations: Transaction.addToHistory.of(false) });
+        if (origin.value === shown) return replace(view, next);
+        shown = origin.value;
+        view.setState(fresh());
+        mark(view, problems.peek());
       }),
-      effect(() => {
-        const first = problems.value.find((p) => p.line > 0 && p.line <= made.state.doc.lines);
-        made.dispatch(setDiagnostics(made.state, diagnostics(made.state, problems.value)));
-        if (first && !made.hasFocus) made.dispatch({ effects: EditorView.scrollIntoView(made.state.doc.line(first.line).from, { y: 'center' }) });
-      }),
+      effect(() => mark(view, problems.value)),
     ];
     return () => {
       for (const stop of stops) stop();
-      made.destroy();
+      view.destroy();
     };
   }, [readOnly]);
-  return <div class="code" ref={box} />;
+  return (
+    <>
+      <div class="code" ref={box} />
+      <p class="quiet small-print" id="editor-keys">
+        Ctrl+S applies and saves. Tab indents; Esc, then Tab, leaves the text.
+      </p>
+    </>
+  );
 }

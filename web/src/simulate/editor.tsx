@@ -7,7 +7,7 @@ import { api, building, documentState, frame, helm, lines, mayDrive, onEvent, po
 import type { Material, Problem } from '../types';
 import { CodeArea } from './code_area';
 import { isSameRobot, keep as keepText, type Origin, takeKept } from './kept_texts';
-import { saveRobot } from './save_robot';
+import { SaveAs, saveRobot } from './save_robot';
 import { keyOf } from './toml_edit';
 import { pinned } from './view_state';
 
@@ -25,6 +25,8 @@ let loads = 0;
 let savedLine = 0; // the connection, and whether the text was in a file, at the last update
 let wasUnsaved = false;
 let ofRobot: Origin | null = null; // what the text in the editor is of
+/// Counts the robots whose text the editor has had.
+const textOf = signal(0);
 
 /// Changes that have not been applied are kept, whoever has control by now, also those that are typed before the
 /// studio's text arrives, and so is text that a restarted studio no longer has. They stay in the editor only beside their
@@ -41,13 +43,15 @@ async function load() {
   const keep = (dirty || (lost && helm.value.you)) && mine !== next;
   const overtaken = keep && !lost && !helm.value.you && next !== theirs.value;
   const robot = documentState.value;
-  const other = keep && ofRobot !== null && !isSameRobot(ofRobot, robot, line !== savedLine);
+  const isAnother = ofRobot !== null && !isSameRobot(ofRobot, robot, line !== savedLine);
+  const other = keep && isAnother;
   if (other) keepText(mine, ofRobot!);
   const stays = keep && !other;
   const back = stays ? null : takeKept(robot);
   batch(() => {
     theirs.value = next;
     if (!stays) text.value = back ?? next;
+    if (isAnother) textOf.value += 1;
   });
   if (other) say(`Another robot was opened. Your text of ${ofRobot!.title} that was not applied is kept under File.`);
   else if (lost && keep) say('The studio was restarted without your unsaved text. It is still here under File: press Apply to restore it.');
@@ -216,12 +220,22 @@ effect(() => {
   void saveRobot();
 });
 
+/// A name for a file that the robot does not have yet.
+function newName(): string {
+  const name = documentState.peek().name;
+  if (name) return name.replace(/(\.toml)?$/i, '_copy.toml');
+  return `${(scene.peek()?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`;
+}
+
 export function Editor() {
-  /// The name in the form; null: there is no form.
+  /// The name that the form begins with; null: there is no form.
   const [saveAs, setSaveAs] = useState<string | null>(null);
   const d = documentState.value;
   const changed = text.value !== theirs.value;
-  const askForName = () => setSaveAs(d.name ? d.name.replace(/(\.toml)?$/i, '_copy.toml') : `${(scene.value?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`);
+  const askForName = () => setSaveAs(newName());
+  const saveTyped = async () => {
+    if (mayDrive.peek() && (await applyTyped())) documentState.peek().name ? void saveRobot() : askForName();
+  };
   const canBuildAgain = !changed && problems.value.length > 0;
   return (
     <div class="editor">
@@ -256,23 +270,7 @@ export function Editor() {
           </button>
         )}
       </div>
-      {saveAs !== null && (
-        <form
-          class="saveas"
-          onSubmit={async (e) => {
-            e.preventDefault();
-            if (await saveRobot(saveAs)) setSaveAs(null);
-          }}
-        >
-          <input value={saveAs} aria-label="File name" onInput={(e) => setSaveAs(e.currentTarget.value)} data-testid="save-name" />
-          <button class="primary small" disabled={!saveAs.trim()}>
-            Save
-          </button>
-          <button class="small" type="button" onClick={() => setSaveAs(null)}>
-            Cancel
-          </button>
-        </form>
-      )}
+      {saveAs !== null && <SaveAs first={saveAs} close={() => setSaveAs(null)} />}
       {problems.value.length > 0 && (
         <div class="problems" role="alert" data-testid="problems">
           <ul>
@@ -284,7 +282,7 @@ export function Editor() {
           </ul>
         </div>
       )}
-      <CodeArea text={text} problems={problems} readOnly={!mayDrive.value} onApply={() => void apply(text.peek())} />
+      <CodeArea text={text} origin={textOf} problems={problems} readOnly={!mayDrive.value} onApply={() => void apply(text.peek())} onSave={() => void saveTyped()} />
       <label class="tick autosave">
         <input type="checkbox" checked={autosave.value} onChange={(e) => (autosave.value = e.currentTarget.checked)} data-testid="autosave" />
         Save every applied change to the file

@@ -1,6 +1,7 @@
-// Saves the robot file, and asks before changes are written over that were made elsewhere.
+// Saves the robot file, also under another name, and asks before changes are written over that were made elsewhere.
 import { signal } from '@preact/signals';
-import { useDialog } from '../dismiss';
+import { useEffect, useRef, useState } from 'preact/hooks';
+import { useDialog, useFocusBack } from '../dismiss';
 import { api, documentState, post, say, type Refusal } from '../store';
 
 /// The file that was changed elsewhere; '': none.
@@ -17,6 +18,32 @@ export async function saveRobot(name = '', overwrite = false): Promise<boolean> 
     else say((error as Error).message);
     return false;
   }
+}
+
+/// Asks for the name of a new file; `first`: a suggestion.
+export function SaveAs({ first, close }: { first: string; close: () => void }) {
+  const [name, setName] = useState(first);
+  const field = useRef<HTMLInputElement>(null);
+  useFocusBack(true);
+  useEffect(() => field.current?.focus(), []);
+  return (
+    <form
+      class="saveas"
+      onKeyDown={(e) => e.key === 'Escape' && close()}
+      onSubmit={async (e) => {
+        e.preventDefault();
+        if (await saveRobot(name)) close();
+      }}
+    >
+      <input value={name} aria-label="File name" onInput={(e) => setName(e.currentTarget.value)} data-testid="save-name" ref={field} />
+      <button class="primary small" disabled={!name.trim()}>
+        Save
+      </button>
+      <button class="small" type="button" onClick={close}>
+        Cancel
+      </button>
+    </form>
+  );
 }
 
 export function SaveQuestion() {
