@@ -1,14 +1,13 @@
 // The page without a mouse: where the focus is after each step of the way from a robot to a print, and how the text of the
 // robot file is left, undone and saved.
 import assert from 'node:assert/strict';
-import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, readRobot, setSpeed, settled, startBrowser, startStudio, typeRobot } from './studio.mjs';
+import { openPage, readRobot, settled, startBrowser, startStudio, typeRobot } from './studio.mjs';
 import { block } from './shapes.mjs';
 
-const example = (name) => new URL(`../../examples/${name}`, import.meta.url).pathname;
 let folder;
 let studio;
 let browser;
@@ -107,4 +106,62 @@ test('the text says how the keyboard leaves it; Ctrl+S applies and saves it, or 
   await page.keyboard.press('Escape');
   await focused(page, 'robot-file');
   assert.deepEqual(wrong, []);
+});
+
+test('a menu gives the focus back once something was chosen, also after a question, and closes where Tab leaves it', async (t) => {
+  const { page } = await edited(t);
+  const menu = page.getByTestId('open');
+  await press(page, menu);
+  await press(page, item(page, 'other.toml'));
+  await focused(page, 'open');
+  await page.waitForFunction(() => window.pliant.robotText.value.includes('name = "other"'));
+  await typeRobot(page, `${await readRobot(page)}# typed\n`);
+  for (const answer of ['keep-editing', 'discard']) {
+    await press(page, menu);
+    await press(page, item(page, 'block.toml'));
+    await press(page, page.getByTestId(answer));
+    await focused(page, 'open');
+  }
+  await page.waitForFunction(() => window.pliant.robotText.value.includes('name = "block"'));
+  await press(page, menu);
+  await item(page, 'other.toml').waitFor();
+  await page.keyboard.press('Shift+Tab');
+  await item(page, 'other.toml').waitFor({ state: 'detached' });
+  assert.equal(await menu.getAttribute('aria-expanded'), 'false');
+});
+
+const landed = (page) => page.waitForFunction(() => document.activeElement?.classList.contains('landing'));
+
+test('through a print, the focus stays at the button that takes the place of the one that was pressed', async (t) => {
+  const own = await startStudio(['block.toml'], folder);
+  t.after(() => own.stop());
+  const { page } = await openPage(browser, `${own.address}#print`, t);
+  await page.waitForFunction(() => window.pliant.helm.value.you && window.pliant.scene.value);
+  await page.evaluate(() => window.pliant.post('/api/job/slice', { printer: 'tower', layer: '0.5 mm', 'any-vat': true }));
+  await press(page, page.getByTestId('save-job'));
+  await focused(page, 'device');
+  await page.getByTestId('take-speed').selectOption('10');
+  await press(page, page.getByTestId('take-twin'));
+  await page.getByTestId('start').waitFor();
+  await landed(page);
+  for (const box of await page.locator('.checklist input').all()) await box.press('Space');
+  await press(page, page.getByTestId('start'));
+  for (const next of ['pause', 'resume', 'pause']) {
+    await focused(page, next);
+    if (next === 'resume') await page.waitForFunction(() => document.activeElement.getAttribute('aria-disabled') === 'false');
+    await page.keyboard.press('Enter');
+  }
+  await focused(page, 'resume');
+  await page.keyboard.press('Tab');
+  await focused(page, 'cancel');
+  for (const [key, next] of [['Enter', 'keep-printing'], ['Escape', 'cancel'], ['Enter', 'keep-printing'], ['Enter', 'cancel'], ['Enter', 'keep-printing']]) {
+    await page.keyboard.press(key);
+    await focused(page, next);
+  }
+  await page.keyboard.press('Tab');
+  await focused(page, 'cancel-sure');
+  await page.keyboard.press('Enter');
+  await focused(page, 'cancel');
+  await page.getByTestId('start').waitFor();
+  await landed(page);
 });

@@ -1,13 +1,17 @@
 // What is to be confirmed before a print, and what the studio has checked itself.
-import { signal } from '@preact/signals';
+import { effect, signal } from '@preact/signals';
 import { counted } from '../counted';
 import { Icon } from '../icons';
 import { clock } from '../make/plan';
 import { changes, staleText } from '../make/stale';
 import { job } from '../store';
-import { flags, host, info, known, maySteer, now } from './state';
+import { busy, flags, host, info, known, maySteer, now } from './state';
 
 const ticks = signal<Record<string, boolean>>({});
+/// They are of one print.
+effect(() => {
+  if (busy.value) ticks.value = {};
+});
 
 /// The results of the studio's own checks.
 function Known() {
@@ -82,7 +86,7 @@ export function Checklist() {
           </li>
         ))}
       </ul>
-      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !maySteer.value || !flags.value.ready || doorOpen} onClick={() => void host('job', { command: 'start' }).then((begun) => begun && (ticks.value = {}))}>
+      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !maySteer.value || !flags.value.ready || doorOpen} onClick={() => host('job', { command: 'start' })}>
         {doorOpen ? 'Close the door first' : open > 0 ? `Confirm ${counted(open, 'item')}` : 'Start the print'}
       </button>
     </section>

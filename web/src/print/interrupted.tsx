@@ -1,5 +1,6 @@
 // A print that was interrupted: resume or discard it.
-import { useState } from 'preact/hooks';
+import { useRef, useState } from 'preact/hooks';
+import { useKeptFocus } from '../dismiss';
 import { Icon } from '../icons';
 import { post } from '../store';
 import { flags, host, info, maySteer } from './state';
@@ -9,6 +10,8 @@ export function Interrupted() {
   const [lit, setLit] = useState('');
   const [untouched, setUntouched] = useState(false);
   const [sure, setSure] = useState(false);
+  const box = useRef<HTMLDivElement>(null);
+  useKeptFocus(box, ['[data-testid=keep-print]', '[data-testid=put-away]']);
   const may = maySteer.value && !flags.value.working;
   const twin = info.value!.twin;
   return (
@@ -18,7 +21,7 @@ export function Interrupted() {
         Its journal records which exposures are complete.
         {twin ? ' The virtual printer stands where it stood then, with its part; the print continues there.' : ' The platform is raised, the axes are homed, and the print continues where it stopped.'}
       </p>
-      <div class="row left wrap">
+      <div class="row left wrap" ref={box} onKeyDown={(e) => e.key === 'Escape' && setSure(false)}>
         <button
           class="primary"
           data-testid="go-on"
@@ -36,10 +39,12 @@ export function Interrupted() {
         </button>
         {sure ? (
           <>
+            <button onClick={() => setSure(false)} data-testid="keep-print">
+              Keep it
+            </button>
             <button class="danger" data-testid="put-away-sure" disabled={!may} onClick={() => void (twin ? post('/api/print/discard') : host('job', { command: 'cancel' }))}>
               Discard print
             </button>
-            <button onClick={() => setSure(false)}>Keep it</button>
           </>
         ) : (
           flags.value.ready || twin ? (

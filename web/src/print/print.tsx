@@ -1,5 +1,7 @@
 // Monitoring and controlling a print.
+import { useRef } from 'preact/hooks';
 import { counted } from '../counted';
+import { useKeptFocus } from '../dismiss';
 import { Icon } from '../icons';
 import { Lost } from '../lost';
 import { post } from '../store';
@@ -27,20 +29,22 @@ const lostText =
 
 export function Print() {
   const i = info.value;
+  const main = useRef<HTMLElement>(null); // the same element all the time
+  useKeptFocus(main, ['.steering button:enabled', '.landing']);
   if (wizard.value)
     return (
-      <main class="page">
+      <main class="page" ref={main}>
         <Wizard />
       </main>
     );
   if (!i?.machine || !now.value)
     return (
-      <main class="page">
+      <main class="page" ref={main}>
         <TakeMachine />
       </main>
     );
   return (
-    <main class="print">
+    <main class="print" ref={main}>
       <h2 class="unseen">Print</h2>
       <div class="watch">
         <Machine3D />
@@ -48,7 +52,7 @@ export function Print() {
         <Webcam />
       </div>
       <div class="steer">
-        <div class="row machine-name">
+        <div class="row machine-name landing" tabIndex={-1}>
           <b>{i.machine.name}</b>
           <span class="quiet">{i.twin ? 'virtual printer' : i.device}</span>
         </div>

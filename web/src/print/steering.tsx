@@ -1,5 +1,6 @@
 // Pause, resume and cancel a print; why a paused print waits.
-import { useEffect, useState } from 'preact/hooks';
+import { useRef, useState } from 'preact/hooks';
+import { useKeptFocus } from '../dismiss';
 import { Icon } from '../icons';
 import { busy, flags, host, info, known, maySteer, now } from './state';
 
@@ -33,56 +34,68 @@ function Waiting() {
   );
 }
 
-export function Steering() {
+/// Pause, then Resume: one button, so that it keeps the focus.
+function PauseOrResume() {
   const n = now.value!;
   const f = flags.value;
+  const blocked = f.paused ? n.machine.door === 'open' : f.pausing;
+  const press = () => {
+    if (blocked) return;
+    void host('job', f.paused ? { command: 'resume' } : { command: 'pause', action: 'pause' });
+  };
+  return (
+    <button class={f.paused ? 'primary' : ''} data-testid={f.paused ? 'resume' : 'pause'} disabled={!maySteer.value} aria-disabled={blocked} onClick={press}>
+      <Icon name={f.paused ? 'play' : 'pause'} /> {f.pausing ? 'pausing…' : !f.paused ? 'Pause' : refillOf(n.progress.prompt) ? 'Filled, resume' : 'Resume'}
+    </button>
+  );
+}
+
+/// Cancel, and the question whether that is meant. One button asks it and takes it back: it keeps the focus, and who
+/// presses twice cancels nothing.
+function CancelPrint() {
   const [sure, setSure] = useState(false);
-  useEffect(() => {
-    if (!busy.value) setSure(false);
-  }, [busy.value]);
-  const connectable = f.error || (f.closedOrError && !n.job.canResume && n.state.text === 'Offline');
+  const box = useRef<HTMLDivElement>(null);
+  const cancelling = flags.value.cancelling;
+  const asks = sure && !cancelling;
+  useKeptFocus(box, ['button']);
+  return (
+    <div class="row left" ref={box} onKeyDown={(e) => e.key === 'Escape' && setSure(false)}>
+      <button data-testid={asks ? 'keep-printing' : 'cancel'} disabled={!maySteer.value} aria-disabled={cancelling} onClick={() => cancelling || setSure(!sure)}>
+        {!asks && <Icon name="stop" />} {asks ? 'Keep printing' : cancelling ? 'parking…' : 'Cancel'}
+      </button>
+      {asks && (
+        <button
+          class="danger"
+          data-testid="cancel-sure"
+          disabled={!maySteer.value}
+          onClick={() => {
+            setSure(false);
+            void host('job', { command: 'cancel' });
+          }}
+        >
+          Cancel print
+        </button>
+      )}
+    </div>
+  );
+}
+
+export function Steering() {
+  const f = flags.value;
+  const connectable = f.error || (f.closedOrError && !now.value!.job.canResume && now.value!.state.text === 'Offline');
   if (!busy.value && !connectable) return null;
   return (
     <section class="block steering">
       {f.paused && known.value && <Waiting />}
-      <div class="row left">
-        {(f.printing || f.pausing) && (
-          <button data-testid="pause" disabled={!maySteer.value || f.pausing} onClick={() => host('job', { command: 'pause', action: 'pause' })}>
-            <Icon name="pause" /> {f.pausing ? 'pausing…' : 'Pause'}
-          </button>
-        )}
-        {f.paused && (
-          <button class="primary" data-testid="resume" disabled={!maySteer.value || n.machine.door === 'open'} onClick={() => host('job', { command: 'resume' })}>
-            <Icon name="play" /> {refillOf(n.progress.prompt) ? 'Filled, resume' : 'Resume'}
-          </button>
-        )}
-        {busy.value && !sure && (
-          <button data-testid="cancel" disabled={!maySteer.value || f.cancelling} onClick={() => setSure(true)}>
-            <Icon name="stop" /> {f.cancelling ? 'parking…' : 'Cancel'}
-          </button>
-        )}
+      <div class="row left wrap">
+        {(f.printing || f.pausing || f.paused) && <PauseOrResume />}
+        {busy.value && <CancelPrint />}
         {connectable && (
           <button class="primary" disabled={!maySteer.value} data-testid="connect" onClick={() => host('connection', { command: 'connect' })}>
             Reconnect
           </button>
         )}
       </div>
-      {busy.value && sure && (
-        <div class="row left wrap">
-          <button
-            class="danger"
-            data-testid="cancel-sure"
-            disabled={!maySteer.value}
-            onClick={() => {
-              setSure(false);
-              void host('job', { command: 'cancel' });
-            }}
-          >
-            Cancel print
-          </button>
-          <button onClick={() => setSure(false)}>Keep printing</button>
-        </div>
-      )}
       {f.printing && <p class="quiet small-print">The print continues when this page is closed. Keep the studio running and its computer awake.</p>}
     </section>
   );

@@ -1,6 +1,7 @@
 // Before a print: the choice of machine, and the print history of the folder.
-import { useEffect, useState } from 'preact/hooks';
+import { useEffect, useRef, useState } from 'preact/hooks';
 import { counted } from '../counted';
+import { useKeptFocus } from '../dismiss';
 import { Icon } from '../icons';
 import { api, job, mayDrive, post, say, section } from '../store';
 import { jobFileName } from '../make/file_name';
@@ -277,9 +278,13 @@ function Journals() {
 
 export function TakeMachine() {
   const j = job.value;
+  const box = useRef<HTMLDivElement>(null);
+  useKeptFocus(box, ['[data-testid=device]', '.landing']); // once the job was saved
   return (
-    <div class="take">
-      <h2>Print</h2>
+    <div class="take" ref={box}>
+      <h2 class="landing" tabIndex={-1}>
+        Print
+      </h2>
       {j ? (
         <>
           <p>

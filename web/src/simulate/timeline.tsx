@@ -89,6 +89,7 @@ export function Timeline() {
           const keys = asProgram();
           if (!keys) return say('The recording has nothing of the actuators that the robot has now.');
           panel.value = 'file';
+          document.getElementById('tab-file')?.focus(); // this button goes away
           void insertKeys(text.value, keys, endOf(keys)).then((done) => done && (recorded.value = []));
         }}>
           Insert {counted(recorded.value.length, 'sample')} as program
