@@ -49,6 +49,14 @@ Result<slice::SupportSettings> support_settings(const Order& order) {
     return s;
 }
 
+Result<double> spacing_um(const Order& order) {
+    double um = 0;
+    if (Status status = read_lengths({{"--spacing", &order.spacing, &um}}); !status)
+        return tl::unexpected(status.error());
+    if (um < 0) return input_error("--spacing {}: must be 0 or more", order.spacing);
+    return um;
+}
+
 /// The wanted position of the centre, relative to the platform's.
 Result<Vec3> shift_of(const Order& order) {
     if (order.at.empty()) return Vec3{};
@@ -114,9 +122,9 @@ Status place(const Order& order, const job::JobSettings& settings, Drawing& draw
         const Vec3 degrees{order.turn[0], order.turn[1], order.turn[2]};
         if (Status status = slice::turn(drawing.bodies, degrees); !status) return status;
     }
-    double spacing_um = 0;
-    if (Status status = read_lengths({{"--spacing", &order.spacing, &spacing_um}}); !status) return status;
-    if (Status status = slice::repeat(drawing.bodies, order.copies, spacing_um, room_of(settings)); !status)
+    const Result<double> spacing = spacing_um(order);
+    if (!spacing) return tl::unexpected(spacing.error());
+    if (Status status = slice::repeat(drawing.bodies, order.copies, *spacing, room_of(settings)); !status)
         return status;
     const Result<std::vector<std::string>> warnings = slice::place_on_platform(drawing.bodies, raster);
     if (!warnings) return tl::unexpected(warnings.error());
@@ -243,12 +251,10 @@ void note_thin_walls(const Order& order, double wall_um, const slice::Settings& 
 Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,
                    Progress& progress) {
     if (order.hollow.empty()) return {};
-    slice::HollowSettings hollow;
-    Status status =
-        read_lengths({{"--hollow", &order.hollow, &hollow.wall_um}, {"--drain", &order.drain, &hollow.drain_um}});
-    if (!status) return status;
-    note_thin_walls(order, hollow.wall_um, settings.slicing, drawing.warnings);
-    auto made = slice::hollow_out(drawing.bodies, settings.slicing, hollow, progress);
+    const Result<slice::HollowSettings> hollow = hollow_settings(order);
+    if (!hollow) return tl::unexpected(hollow.error());
+    note_thin_walls(order, hollow->wall_um, settings.slicing, drawing.warnings);
+    auto made = slice::hollow_out(drawing.bodies, settings.slicing, *hollow, progress);
     if (!made) return tl::unexpected(made.error());
     settings.slicing.removed = made->removed;
     drawing.warnings.insert(drawing.warnings.end(), made->warnings.begin(), made->warnings.end());
@@ -259,6 +265,18 @@ Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& draw
 }
 
 }  // namespace
+
+Result<slice::HollowSettings> hollow_settings(const Order& order) {
+    slice::HollowSettings hollow;
+    Status status =
+        read_lengths({{"--hollow", &order.hollow, &hollow.wall_um}, {"--drain", &order.drain, &hollow.drain_um}});
+    if (!status) return tl::unexpected(status.error());
+    if (!(hollow.wall_um > 0 && hollow.wall_um <= slice::most_hollow_um))
+        return input_error("--hollow {}: must be above 0 and at most 100 mm", order.hollow);
+    if (!(hollow.drain_um >= 0 && hollow.drain_um <= slice::most_hollow_um))
+        return input_error("--drain {}: must be 0 to 100 mm", order.drain);
+    return hollow;
+}
 
 Status check_companions(const Order& order) {
     for (const auto& [option, text] :

@@ -81,7 +81,7 @@ TEST_CASE("--turn, --copies and --spacing arrange the part") {
               .x == near(16000, {.relative = 1e-12}));
     CHECK(refused([](Order& o) { o.copies = 0; }).find("0 copies") == 0);
     CHECK(!refused([](Order& o) { o.copies = 1000; }).empty());  // no room
-    CHECK(!refused([](Order& o) { o.spacing = "-1 mm"; }).empty());
+    CHECK(refused([](Order& o) { o.spacing = "-1 mm"; }) == "--spacing -1 mm: must be 0 or more");
     CHECK(refused([](Order& o) { o.spacing = "2"; }).find("--spacing: ") == 0);
     CHECK(!refused([](Order& o) { o.turn = {0, HUGE_VAL, 0}; }).empty());
 }
@@ -213,7 +213,11 @@ TEST_CASE("--least-layer gives layers of different heights, and --hollow a cavit
     REQUIRE(hollow.notes.size() == 1);
     CHECK(hollow.notes[0].find("hollow: 1 cavity of ") == 0);
     CHECK(refused([](Order& o) { o.drain = "1 mm"; }) == "--drain: needs --hollow");
-    CHECK(refused([](Order& o) { o.hollow = "0 mm"; }).find("must be above 0") != std::string::npos);
+    CHECK(refused([](Order& o) { o.hollow = "0 mm"; }) == "--hollow 0 mm: must be above 0 and at most 100 mm");
+    CHECK(refused([](Order& o) {
+              o.hollow = "1 mm";
+              o.drain = "-1 mm";
+          }) == "--drain -1 mm: must be 0 to 100 mm");
     CHECK(refused([](Order& o) { o.hollow = "2 mm"; }).find("nothing of the part lies") != std::string::npos);
     CHECK(refused([](Order& o) { o.hollow = "101 mm"; }).find("at most 100 mm") != std::string::npos);
 }

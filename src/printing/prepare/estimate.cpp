@@ -16,8 +16,10 @@ namespace {
 /// What an estimate does not include is an error all the same if it cannot be read.
 Status check_slow(const Order& order) {
     if (Status status = check_companions(order); !status) return status;
-    for (const auto& [option, text] :
-         {std::pair{"--hollow", &order.hollow}, {"--drain", &order.drain}, {"--least-layer", &order.least_layer}}) {
+    if (!order.hollow.empty()) {
+        if (const auto hollow = hollow_settings(order); !hollow) return tl::unexpected(hollow.error());
+    }
+    for (const auto& [option, text] : {std::pair{"--drain", &order.drain}, {"--least-layer", &order.least_layer}}) {
         if (const auto length = length_um(option, *text, 0); !length) return tl::unexpected(length.error());
     }
     return check_supports(order);

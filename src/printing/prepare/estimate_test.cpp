@@ -211,4 +211,8 @@ TEST_CASE("orders that slicing refuses have no estimate") {
     CHECK(unknown.error().message.find("no vat of tower prototype holds the resin \"glue\" of \"soft\"") == 0);
     order.any_vat = true;
     CHECK(estimate(order, tower().printer, blocks()));
+    order.hollow = "-1 mm";
+    const auto inside_out = estimate(order, tower().printer, blocks());
+    REQUIRE_FALSE(inside_out);
+    CHECK(inside_out.error().message == "--hollow -1 mm: must be above 0 and at most 100 mm");
 }

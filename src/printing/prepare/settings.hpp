@@ -10,6 +10,7 @@
 #include "printing/prepare/make_job.hpp"
 #include "printing/prepare/order.hpp"
 #include "printing/prepare/settings_record.hpp"
+#include "printing/slice/hollow.hpp"
 
 namespace pliant::prepare {
 
@@ -24,6 +25,9 @@ namespace pliant::prepare {
 
 /// Errors that arrange() finds in the options of supports, apart from what they have to do with the part.
 [[nodiscard]] Status check_supports(const Order& order);
+
+/// Of an order that has `hollow`. Errors name the option.
+[[nodiscard]] Result<slice::HollowSettings> hollow_settings(const Order& order);
 
 /// Rotates the part, arranges its copies, places them on the platform (or above it, on supports), sets layer heights,
 /// hollows the part and adds supports, as far as the order asks for it. `notes` gets lines that describe the result.

@@ -9,7 +9,7 @@
 
 namespace pliant::slice {
 
-/// Scales all bodies by `factor` about the origin. Errors: a factor outside 0.01 to 100.
+/// Scales all bodies by `factor` about the origin. Errors: a factor outside 0.001 to 1000.
 [[nodiscard]] Status scale(std::vector<Body>& bodies, double factor);
 
 /// Rotates all bodies about x, then y, then z, in degrees, counter-clockwise seen from the axis' end. Quarter turns are

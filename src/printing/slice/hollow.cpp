@@ -563,10 +563,9 @@ private:
 }  // namespace
 
 Status check(const HollowSettings& hollow) {
-    constexpr double most_um = 100000;
-    if (!(hollow.wall_um > 0 && hollow.wall_um <= most_um))
+    if (!(hollow.wall_um > 0 && hollow.wall_um <= most_hollow_um))
         return input_error("hollow: wall of {:.6g} um: must be above 0 and at most 100 mm", hollow.wall_um);
-    if (!(hollow.drain_um >= 0 && hollow.drain_um <= most_um))
+    if (!(hollow.drain_um >= 0 && hollow.drain_um <= most_hollow_um))
         return input_error("hollow: drain of {:.6g} um: must be 0 to 100 mm", hollow.drain_um);
     return {};
 }

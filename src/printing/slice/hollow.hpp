@@ -11,6 +11,9 @@
 
 namespace pliant::slice {
 
+/// Of walls, and of drains.
+inline constexpr double most_hollow_um = 100000;
+
 struct HollowSettings {
     double wall_um = 2000;
     double drain_um = 0;  ///< diameter of the holes; 0: none

@@ -94,7 +94,7 @@ Status take_other(const std::string& key, const Json& value, Order& order) {
     if (key == "at") return take_at(value, order);
     if (key == "support-paint") return take_paint(value, order);
     if (key == "scale") {
-        if (!value.is_number()) return input_error("--scale: a number from 0.01 to 100 is needed");
+        if (!value.is_number()) return input_error("--scale: a number from 0.001 to 1000 is needed");
         order.scale = value.get<double>();
         return {};
     }
