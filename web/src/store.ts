@@ -182,6 +182,7 @@ async function loadScene() {
   const frameResponse = await api('/api/frame');
   const bytes = await frameResponse.arrayBuffer();
   const fetched = bytes.byteLength > 0 ? readPacket<FrameHead>(bytes) : null;
+  if (loaded.head.opened !== documentState.value.opened) return; // of the robot before
   // If the robot was rebuilt meanwhile, a newer scene is being loaded.
   if (sceneKnown && scene.value !== null && loaded.head.revision < scene.value.head.revision) return;
   const known = [fetched, early].filter((f) => f?.head.revision === loaded.head.revision) as Frame[];
@@ -237,6 +238,14 @@ function askForLostHelm() {
   if (!helm.value.you && !helm.value.held) helmTimer = window.setTimeout(() => send({ type: 'ping' }), helmKept);
 }
 
+/// Where another robot was opened, the one before is shown no longer: this one may take long to build, or have an error.
+function takeDocument(next: typeof documentState.value) {
+  batch(() => {
+    documentState.value = next;
+    if (scene.peek() && scene.peek()!.head.opened !== next.opened) scene.value = frame.value = null;
+  });
+}
+
 function receiveText(text: string) {
   const event = JSON.parse(text) as Record<string, unknown> & { type: string };
   if (event.type === 'helm') {
@@ -247,7 +256,7 @@ function receiveText(text: string) {
     }
     askForLostHelm();
   }
-  if (event.type === 'document') documentState.value = event as never;
+  if (event.type === 'document') takeDocument(event as never);
   if (event.type === 'scene') {
     sentAt.clear(); // inputs to the robot before
     unanswered.value = false;

@@ -55,6 +55,12 @@ test('opening a printer file, a broken job or another text gives the right messa
   await page.getByTestId('file-wrong').waitFor();
   await page.getByTestId('tab-file').click();
   assert.match(await page.getByTestId('problems').textContent(), /hello/);
+  // The finger is not shown under another file's name.
+  assert.equal(await page.getByTestId('open').textContent(), 'no robotnotes.toml');
+  assert.equal(await page.evaluate(() => window.pliant.scene.value ?? window.pliant.frame.value), null);
+  await page.getByTestId('tab-move').click();
+  assert.match(await page.getByTestId('no-robot').textContent(), /could not be built/);
+  assert.equal(await page.locator('input[type=range]').count(), 0);
   await open(page, 'finger.toml');
   await page.getByTestId('file-wrong').waitFor({ state: 'detached' });
   await settled(page);

@@ -84,7 +84,10 @@ export function Canvas() {
     };
     const stops = [
       effect(() => {
-        if (!scene.value) return;
+        if (!scene.value) {
+          look.shownFrame.value = null;
+          return made.clear();
+        }
         made.setScene(scene.value);
         // The order of the two effects is undefined: a frame before its scene would be lost.
         const shown = look.shownFrame.peek() ?? frame.peek();

@@ -61,6 +61,7 @@ export class RobotView {
   private readonly reach = new ReachSheets();
   private readonly draft = draftBox();
   private drawn: Drawn | null = null;
+  private robot = ''; // drawn last: the same one is seen from where it was before
   private frame: Frame | null = null;
   private size = 100;
   private picks: Pick[] = [];
@@ -110,13 +111,22 @@ export class RobotView {
   }
 
   setScene(scene: Scene) {
-    const first = this.drawn?.scene.head.robot !== scene.head.robot;
+    const first = this.robot !== scene.head.robot;
+    this.robot = scene.head.robot;
     this.frame = null;
     this.forget();
     this.build(scene);
     this.setPath(this.path);
     if (first) this.lookAt('home', 0.62); // leaves room for bending
     if (this.options) this.setOptions(this.options);
+    this.invalidate();
+  }
+
+  /// Shows nothing.
+  clear() {
+    this.drawn = this.frame = null;
+    this.ground.plane.visible = this.section.sheet.visible = false;
+    this.forget();
     this.invalidate();
   }
 
@@ -149,6 +159,7 @@ export class RobotView {
     const parts = new RobotParts(scene, this.size);
     this.root.add(outside, inside, depth, ghost, pinned, parts.group);
     this.drawn = { scene, geometry, outside, inside, depth, wires: null, ghost, pinned, parts, offsets: offsetsOf(scene, centre) };
+    this.ground.plane.visible = true;
     this.updateNormals(this.drawn);
   }
 
