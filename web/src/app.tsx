@@ -56,7 +56,7 @@ function Open() {
   const d = documentState.value;
   const other = otherJob();
   const title = other || (scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot'));
-  const beside = other ? `job; the robot is ${d.title}` : d.title;
+  const beside = other ? `job; robot: ${scene.value!.head.robot} (${d.title})` : d.title;
   const box = useRef<HTMLDivElement>(null);
   useDismiss(project !== null, () => setProject(null), box);
   const own = (project?.files ?? []).filter((f) => !project!.printers.includes(f));

@@ -732,7 +732,7 @@ test('the robot is sliced, and its layers and plan are shown', async (t) => {
   await page.waitForFunction(() => {
     const canvas = document.querySelector('[data-testid=layer-view]');
     const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
-    const colours = window.pliant.job.value.colours.map((c) => parseInt(c.slice(1), 16));
+    const colours = (window.pliant.job.value?.colours ?? []).map((c) => parseInt(c.slice(1), 16));
     for (let i = 0; i < pixels.length; i += 4)
       for (const c of colours) if (pixels[i] === c >> 16 && pixels[i + 1] === ((c >> 8) & 255) && pixels[i + 2] === (c & 255)) return true;
     return false;
@@ -748,6 +748,16 @@ test('an invalid option is reported at its field; supports, bonds and exposure r
   const { page, wrong } = await openPage(browser, `${studio.address}#make`, t);
   await page.waitForFunction(() => window.pliant.scene.value !== null);
   await page.getByTestId('option-layer').fill('500');
+  await page.getByTestId('make-layers').click();
+  await page.getByTestId('out-of-date').waitFor();
+  const [chip, layer] = [await page.getByTestId('out-of-date').boundingBox(), await page.locator('.layer-info').boundingBox()];
+  assert.ok(chip.x + chip.width < layer.x || chip.y > layer.y + layer.height, JSON.stringify([chip, layer]));
+  await page.getByTestId('group-hollow').locator('summary').click();
+  await page.getByTestId('option-hollow').fill('-1');
+  await says(page.getByTestId('wrong-hollow'), /must be above 0/);
+  assert.equal(await page.getByTestId('option-hollow').getAttribute('aria-invalid'), 'true');
+  await page.getByTestId('option-hollow').fill('');
+  await page.getByTestId('wrong-hollow').waitFor({ state: 'detached' });
   await page.getByTestId('group-support').locator('summary').click();
   await page.getByTestId('option-support').selectOption({ index: 1 });
   await page.getByTestId('option-support-tip').fill('9 apples');
@@ -802,6 +812,28 @@ test('on a small window the sliders are wide enough, and the legend covers neith
   await page.getByTestId('field').selectOption('material');
 });
 
+test('on a low or very narrow window nothing that stands over the robot covers the rest', async (t) => {
+  const { page } = await openPage(browser, studio.address, t);
+  await settled(page);
+  for (const [width, height] of [[550, 360], [320, 640]]) {
+    await page.setViewportSize({ width, height });
+    await redrawn(page);
+    const boxes = await page.evaluate(() => ['.lookbar', '.materials-legend', '.stage-right', '.stage-foot'].map((s) => document.querySelector(s).getBoundingClientRect().toJSON()));
+    boxes.slice(1).forEach((b, k) => assert.ok(b.top >= boxes[k].bottom, JSON.stringify(boxes)));
+  }
+});
+
+test('with the colours of a contrast theme, what is chosen has a border, and colours stay', async (t) => {
+  const { page } = await openPage(browser, studio.address, t, { forcedColors: 'active' });
+  await settled(page);
+  const style = (selector, of) => page.evaluate(([s, o]) => getComputedStyle(document.querySelector(s))[o], [selector, of]);
+  for (const chosen of ['[data-testid=section-simulate]', '[data-testid=tab-move]']) assert.equal(await style(chosen, 'outlineStyle'), 'solid', chosen);
+  assert.notEqual(await style('[data-testid=section-make]', 'outlineStyle'), 'solid');
+  const drawn = await page.evaluate(() => window.pliant.scene.value.head.materials[0].colour);
+  const [r, g, b] = [1, 3, 5].map((k) => parseInt(drawn.slice(k, k + 2), 16));
+  assert.equal(await style('.materials-legend .swatch', 'backgroundColor'), `rgb(${r}, ${g}, ${b})`);
+});
+
 test('under Print the bar names the job where it is not of the open robot', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await page.waitForFunction(() => window.pliant.job.value !== null);
@@ -813,6 +845,7 @@ test('under Print the bar names the job where it is not of the open robot', asyn
     window.pliant.job.value = { ...j, manifest: { ...j.manifest, name: 'halves' } };
   });
   await says(title, /^halves$/);
+  await says(page.getByTestId('open').locator('.quiet').first(), 'job; robot: finger (finger.toml)');
   await page.getByTestId('section-simulate').click();
   await says(title, /^finger$/);
   assert.deepEqual(wrong, []);
