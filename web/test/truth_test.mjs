@@ -63,7 +63,7 @@ test('a studio is killed during a print and started again: the page shows unknow
   await page.getByText('There is no job yet').waitFor(patience);
   assert.equal(await page.getByTestId('print-state').count(), 0);
   assert.equal(await page.getByTestId('emergency').count(), 0, 'there is no machine to stop');
-  assert.match(await text(page, 'notice'), /has ended/);
+  assert.match(await text(page, 'notice'), /was interrupted.*the print history can resume it/);
 });
 
 test('a connection that stops without closing is found lost by its silence', async (t) => {

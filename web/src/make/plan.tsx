@@ -75,7 +75,7 @@ function LayerTimes({ plan }: { plan: Plan }) {
       <figcaption>
         Time per layer <span class="quiet">from the platform up; maximum {most.toFixed(0)} s</span>
       </figcaption>
-      <svg viewBox={`0 0 ${bins} 40`} preserveAspectRatio="none" class="bars">
+      <svg viewBox={`0 0 ${bins} 40`} preserveAspectRatio="none" class="bars" role="img" aria-label={`Time of each layer, at most ${most.toFixed(0)} s`}>
         {sums.map((s, b) => {
           let y = 40;
           return s.map((v, k) => {
@@ -107,7 +107,7 @@ function VatRows({ job, plan }: { job: Job; plan: Plan }) {
             <span>
               slot {vat.slot} <span class="quiet">{vat.resin}</span>
             </span>
-            <svg viewBox={`0 0 ${plan.layers} 10`} preserveAspectRatio="none">
+            <svg viewBox={`0 0 ${plan.layers} 10`} preserveAspectRatio="none" role="img" aria-label={`Layers with ${vat.resin}`}>
               <rect width={plan.layers} height={10} class="rail" />
               {runs.map(([a, b]) => (
                 <rect x={a} width={b - a} height={10} fill={job.colours[vat.materials[0]] ?? 'var(--accent)'} />
@@ -134,7 +134,7 @@ function Swap({ job }: { job: Job }) {
       {s.devices.map((device) => (
         <div class="gantt-row">
           <span>{device}</span>
-          <svg viewBox={`0 0 ${s.seconds} 10`} preserveAspectRatio="none">
+          <svg viewBox={`0 0 ${s.seconds} 10`} preserveAspectRatio="none" role="img" aria-label={`When ${device} works`}>
             <rect width={s.seconds} height={10} class="rail" />
             {s.stretches
               .filter((x) => x.device === device)

@@ -108,7 +108,7 @@ async function load() {
   const loaded = (await (await api('/api/print')).json()) as PrintInfo & { now: Now };
   if (mine !== loading) return;
   loading = 0;
-  if (busy.value && !loaded.machine) say('The studio was restarted: the print shown here has ended.');
+  if (busy.value && !loaded.machine) say('The studio was restarted: the print shown here was interrupted. If its job was saved, the print history can resume it.');
   batch(() => {
     info.value = loaded;
     events.value = [];

@@ -171,6 +171,7 @@ function Plot({ shown, onClose }: { shown: Shown; onClose?: () => void }) {
     const parent = box.current;
     const made = drawnByProcessor(() => new uPlot(options, aligned(curves), parent));
     plot.current = made;
+    for (const canvas of parent.querySelectorAll('canvas')) canvas.ariaHidden = 'true'; // the name is that of its box
     const resize = new ResizeObserver(() => box.current && made.setSize({ width: box.current.clientWidth, height: 150 }));
     resize.observe(box.current);
     return () => {
