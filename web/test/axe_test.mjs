@@ -209,7 +209,7 @@ test('axe finds no problem in building and analysing robots, at any width', asyn
   await settled(page);
   // Coarse and linear: it is the page that is looked at.
   await page.evaluate(() => window.pliant.post('/api/robot/set', { changes: [{ key: 'mesh.size', value: '8 mm' }, { key: 'program.steps', value: 2 }] }));
-  await page.waitForFunction(() => window.pliant.scene.value.head.program.steps === 2, undefined, { timeout: 60_000 });
+  await page.waitForFunction(() => window.pliant.scene.value?.head.program.steps === 2, undefined, { timeout: 60_000 });
   await settled(page);
   const wrong = [];
   await understood(page, async (where) => {

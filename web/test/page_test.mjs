@@ -300,7 +300,7 @@ test('a robot is built by clicks, sliders and the library; the rest of the text 
   const rebuilt = async (act) => {
     const last = await revision();
     await act();
-    await page.waitForFunction((r) => window.pliant.scene.value.head.revision > r, last, { timeout: 60_000 });
+    await page.waitForFunction((r) => window.pliant.scene.value?.head.revision > r, last, { timeout: 60_000 });
     await settled(page);
   };
   await page.getByTestId('tab-build').click();
@@ -442,7 +442,7 @@ test('every template opens as a robot that has no file yet', async (t) => {
     await page.locator('.open-list .item', { hasText: label }).click();
     const discard = page.getByTestId('discard');
     if (await discard.waitFor({ timeout: 1000 }).then(() => true, () => false)) await discard.click();
-    await page.waitForFunction((r) => window.pliant.scene.value.head.revision > r, revision, { timeout: 60_000 });
+    await page.waitForFunction((r) => window.pliant.scene.value?.head.revision > r, revision, { timeout: 60_000 });
     await settled(page);
     assert.equal(await page.evaluate(() => window.pliant.scene.value.head.robot), name);
     const state = await page.evaluate(() => window.pliant.documentState.value);

@@ -35,7 +35,7 @@ const tasks = {
     }, boxStl([60, 12, 10]));
     await page.getByTestId('geometry-new').waitFor({ timeout: 60_000 });
     await click(page.getByTestId('geometry-new'));
-    await page.waitForFunction(() => window.pliant.scene.value.head.robot === 'mine', undefined, { timeout: 120_000 });
+    await page.waitForFunction(() => window.pliant.scene.value?.head.robot === 'mine', undefined, { timeout: 120_000 });
     await settled(page);
     await click(page.getByTestId('tab-build'));
     await click(page.getByTestId('place-cable'));
@@ -46,7 +46,7 @@ const tasks = {
       await page.waitForFunction((n) => document.querySelector('.placing')?.textContent.includes(n === 1 ? '1 point' : `${n} points`), k + 1);
     }
     await click(page.getByTestId('finish-cable'));
-    await page.waitForFunction(() => window.pliant.scene.value.head.actuators.length === 1, undefined, { timeout: 120_000 });
+    await page.waitForFunction(() => window.pliant.scene.value?.head.actuators.length === 1, undefined, { timeout: 120_000 });
     await settled(page);
     await click(page.getByTestId('tab-move'));
     await page.getByTestId('number-cable 1').fill('0.93');

@@ -192,7 +192,7 @@ test('the page asks before unsaved text is lost', async (t) => {
   await open();
   await page.getByTestId('discard').click();
   await page.waitForFunction(() => !window.pliant.robotText.value.includes('night of work'));
-  await page.waitForFunction(() => /gripper/i.test(window.pliant.scene.value.head.robot), null, patience);
+  await page.waitForFunction(() => /gripper/i.test(window.pliant.scene.value?.head.robot), null, patience);
 });
 
 test('during dragging linear answers are marked and never green; afterwards the quadratic answer comes', async (t) => {
@@ -239,7 +239,7 @@ test('during dragging linear answers are marked and never green; afterwards the 
   assert.ok(Math.abs(shown - right) < 0.01 * right, `${shown} N, and it is ${right} N`);
   // What asks for linear elements alone says so.
   await page.getByTestId('preview').click();
-  await page.waitForFunction(() => window.pliant.scene.value.head.order === 1, null, patience);
+  await page.waitForFunction(() => window.pliant.scene.value?.head.order === 1, null, patience);
   await settled(page);
   assert.equal(await page.getByTestId('status').getAttribute('data-lamp'), 'warn');
   assert.match(await text(page, 'rough'), /1\.3 to 3 times too large/);
@@ -247,7 +247,7 @@ test('during dragging linear answers are marked and never green; afterwards the 
   const linear = (await head(page)).cables[0];
   assert.ok(Math.abs(linear.ratio - ratio) < 0.03 && linear.tension_N > 1.5 * right, `linear elements say ${linear.tension_N} N at ${linear.ratio}, quadratic ones ${right} N at ${ratio}`);
   await page.getByTestId('refine').click();
-  await page.waitForFunction(() => window.pliant.scene.value.head.order === 2, null, patience);
+  await page.waitForFunction(() => window.pliant.scene.value?.head.order === 2, null, patience);
   await settled(page);
   assert.equal(await page.getByTestId('status').getAttribute('data-lamp'), 'good');
   assert.equal(await page.getByTestId('rough').count(), 0);
@@ -270,7 +270,7 @@ test('the program stops at its end, and a change of material keeps the robot at 
   const modulus = page.locator('[data-testid^="modulus-"]').first();
   await modulus.fill(String(1.001 * Number(await modulus.inputValue())));
   await modulus.press('Enter');
-  await page.waitForFunction((r) => window.pliant.scene.value.head.revision > r, revision, patience);
+  await page.waitForFunction((r) => window.pliant.scene.value?.head.revision > r, revision, patience);
   await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.time - 0.97) < 1e-9 && window.pliant.frame.value.head.arrived, null, patience);
   await says(program, '97 %');
   const after = (await head(page)).markers;
@@ -297,7 +297,7 @@ test('a frame that arrives before its scene is not lost', async (t) => {
   const modulus = page.locator('[data-testid^="modulus-"]').first();
   await modulus.fill(String(1.001 * Number(await modulus.inputValue())));
   await modulus.press('Enter');
-  await page.waitForFunction((r) => window.pliant.scene.value.head.revision > r, revision, patience);
+  await page.waitForFunction((r) => window.pliant.scene.value?.head.revision > r, revision, patience);
   await page.waitForFunction(() => window.pliant.frame.value?.head.arrived, null, { timeout: 10_000 });
 });
 
