@@ -96,7 +96,7 @@ test('the program plays to its end, and a body can be pulled with the pointer', 
   await settled(page);
   await page.getByTestId('rest').click();
   await page.getByTestId('play').click();
-  await page.waitForFunction(() => window.pliant.frame.value?.head.time > 0.999 && !window.pliant.frame.value.head.playing);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.time > 0.999 && !window.pliant.frame.value?.head.playing);
   await settled(page);
   near(await marker(page, 'tip'), simulated(0.85), 0.05, 'tip');
   const before = await marker(page, 'tip');
@@ -107,12 +107,12 @@ test('the program plays to its end, and a body can be pulled with the pointer', 
   await page.mouse.move(x, y);
   await page.mouse.down();
   for (let k = 1; k <= 6; ++k) await page.mouse.move(x, y - 10 * k);
-  await page.waitForFunction((t) => window.pliant.frame.value.head.tag > t && window.pliant.frame.value.head.pull, started);
+  await page.waitForFunction((t) => window.pliant.frame.value?.head.tag > t && window.pliant.frame.value?.head.pull, started);
   await settled(page);
   const pulled = await marker(page, 'tip');
   assert.ok(Math.hypot(...pulled.map((x, k) => x - before[k])) > 1, `${pulled} was ${before} in a view of ${view.width}`);
   await page.mouse.up();
-  await page.waitForFunction(() => !window.pliant.frame.value.head.pull && window.pliant.frame.value.head.arrived);
+  await page.waitForFunction(() => !window.pliant.frame.value?.head.pull && window.pliant.frame.value?.head.arrived);
   near(await marker(page, 'tip'), before, 0.1, 'let go');
   assert.deepEqual(wrong, []);
 });
@@ -132,7 +132,7 @@ test('a dragged marker moves its cable, stays where it is released, and shows it
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
-  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.cables[0].ratio > 0.9999);
   await settled(page);
   await redrawn(page);
   const dot = async () => {
@@ -151,10 +151,10 @@ test('a dragged marker moves its cable, stays where it is released, and shows it
   const value = Number(await page.getByTestId('number-flexor').inputValue());
   assert.ok(value < 0.99, `the slider is at ${value}`);
   await page.mouse.move(x - 10, y - 300);
-  await page.waitForFunction((near) => window.pliant.frame.value.head.lead?.settled && window.pliant.frame.value.head.lead.error_mm > near + 5, led.lead.error_mm);
+  await page.waitForFunction((near) => window.pliant.frame.value?.head.lead?.settled && window.pliant.frame.value?.head.lead.error_mm > near + 5, led.lead.error_mm);
   await says(page.getByTestId('lead-limits'), /nearest point/);
   await page.mouse.up();
-  await page.waitForFunction(() => !window.pliant.frame.value.head.lead);
+  await page.waitForFunction(() => !window.pliant.frame.value?.head.lead);
   await settled(page);
   const value2 = Number(await page.getByTestId('number-flexor').inputValue());
   near(await marker(page, 'tip'), simulated(value2), 0.1, 'let go, where the slider is');
@@ -165,7 +165,7 @@ test('a goal is solved without editing the file: reached, or the nearest point; 
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
-  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.cables[0].ratio > 0.9999);
   // A place that the tip has with a cable of 0.88 is one that it can get to.
   const want = simulated(0.88);
   await page.getByTestId('tab-goal').click();
@@ -294,7 +294,7 @@ test('a robot is built by clicks, sliders and the library; the rest of the text 
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
-  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.cables[0].ratio > 0.9999);
   const before = await readRobot(page);
   const revision = () => page.evaluate(() => window.pliant.scene.value.head.revision);
   const rebuilt = async (act) => {
@@ -388,7 +388,7 @@ test('a link restores state and view; a film and a picture for print can be save
   await page.getByTestId('rest').click();
   await page.getByTestId('field').selectOption('material');
   await page.keyboard.press('1');
-  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.cables[0].ratio > 0.9999);
   await page.waitForTimeout(400);
   const elsewhere = differ(await picture(page), before);
   assert.ok(elsewhere > 100, `${elsewhere}`);
@@ -485,7 +485,7 @@ test('several pages watch, one is in control, and control can be handed over', a
   await first.page.getByTestId('number-flexor').press('Enter');
   await answered(first.page, started);
   const there = await marker(first.page, 'tip');
-  await second.page.waitForFunction((x) => Math.abs(window.pliant.frame.value.head.markers.at(-1)[0] - x) < 0.01 || window.pliant.frame.value.head.arrived, there[0]);
+  await second.page.waitForFunction((x) => Math.abs(window.pliant.frame.value?.head.markers.at(-1)[0] - x) < 0.01 || window.pliant.frame.value?.head.arrived, there[0]);
   await second.page.waitForTimeout(300);
   near(await marker(second.page, 'tip'), there, 0.02, 'both see the same');
   await second.page.getByTestId('ask').click();
@@ -592,7 +592,7 @@ test('the view has standard sides, a ruler, a movable section, and a colour rang
   await page.reload();
   await settled(page);
   await page.getByTestId('rest').click();
-  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.cables[0].ratio > 0.9999);
   await page.getByTestId('view-menu').click();
   await page.getByTestId('view-top').click();
   const label = (name) => page.locator('.labels span', { hasText: name }).boundingBox();

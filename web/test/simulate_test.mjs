@@ -83,7 +83,7 @@ test('an STL dropped onto the page becomes a robot, and gets a cable that bends 
   const number = page.getByTestId('number-cable 1');
   await number.fill('0.9');
   await number.press('Enter');
-  await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.cables[0].ratio - 0.9) < 1e-6 && window.pliant.frame.value.head.arrived, undefined, long);
+  await page.waitForFunction(() => Math.abs(window.pliant.frame.value?.head.cables[0].ratio - 0.9) < 1e-6 && window.pliant.frame.value?.head.arrived, undefined, long);
   assert.ok((await page.evaluate(() => window.pliant.frame.value.head.cables[0].tension_N)) > 0.01);
   // All of it is undone, cable first.
   await page.getByTestId('tab-build').click();
@@ -522,7 +522,7 @@ test('a film can be saved as GIF', async (t) => {
     const at = await page.evaluate(() => window.pliant.frame.value.head.tag);
     await page.getByTestId('number-flexor').fill(value);
     await page.getByTestId('number-flexor').press('Enter');
-    await page.waitForFunction((t) => window.pliant.frame.value.head.tag > t && window.pliant.frame.value.head.arrived, at, long);
+    await page.waitForFunction((t) => window.pliant.frame.value?.head.tag > t && window.pliant.frame.value?.head.arrived, at, long);
   }
   const [download] = await Promise.all([
     page.waitForEvent('download', long),

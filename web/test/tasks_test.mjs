@@ -51,7 +51,7 @@ const tasks = {
     await click(page.getByTestId('tab-move'));
     await page.getByTestId('number-cable 1').fill('0.93');
     await page.getByTestId('number-cable 1').press('Enter');
-    await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.cables[0].ratio - 0.93) < 1e-4, undefined, { timeout: 120_000 });
+    await page.waitForFunction(() => Math.abs(window.pliant.frame.value?.head.cables[0].ratio - 0.93) < 1e-4, undefined, { timeout: 120_000 });
   },
   'see another robot': async (page, click) => {
     await click(page.getByTestId('open'));

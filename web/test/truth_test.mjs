@@ -219,7 +219,7 @@ test('during dragging linear answers are marked and never green; afterwards the 
     await page.waitForTimeout(30);
   }
   // Still held: the hand rests, and that is enough.
-  await page.waitForFunction(() => window.pliant.frame.value.head.arrived && window.pliant.frame.value.head.cables[0].ratio < 0.9, null, patience);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.arrived && window.pliant.frame.value?.head.cables[0].ratio < 0.9, null, patience);
   await page.mouse.up();
   await settled(page);
   assert.equal(await page.getByTestId('status').getAttribute('data-lamp'), 'good');
@@ -233,7 +233,7 @@ test('during dragging linear answers are marked and never green; afterwards the 
     assert.match(s.force, /^≈/);
   }
   // One frame: where the hand has moved last may still be on its way.
-  const there = await page.waitForFunction(() => window.pliant.frame.value.head.arrived && window.pliant.frame.value.head.cables[0], null, patience);
+  const there = await page.waitForFunction(() => window.pliant.frame.value?.head.arrived && window.pliant.frame.value?.head.cables[0], null, patience);
   const { ratio, tension_N: shown } = await there.jsonValue();
   const right = JSON.parse(execFileSync(program, ['simulate', join(folder, 'finger.toml'), '--json', '--set', `cable.flexor.target.length_ratio=${ratio}`])).steps.at(-1).cables.flexor.tension_N;
   assert.ok(Math.abs(shown - right) < 0.01 * right, `${shown} N, and it is ${right} N`);
@@ -260,10 +260,10 @@ test('the program stops at its end, and a change of material keeps the robot at 
   await settled(page);
   const program = page.locator('.track', { has: page.getByTestId('program') }).locator('output');
   await page.getByTestId('play').click();
-  await page.waitForFunction(() => window.pliant.frame.value.head.time > 0.999 && !window.pliant.frame.value.head.playing, null, patience);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.time > 0.999 && !window.pliant.frame.value?.head.playing, null, patience);
   await says(program, '100 %');
   await page.getByTestId('program').fill('0.97');
-  await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.time - 0.97) < 1e-9 && window.pliant.frame.value.head.arrived, null, patience);
+  await page.waitForFunction(() => Math.abs(window.pliant.frame.value?.head.time - 0.97) < 1e-9 && window.pliant.frame.value?.head.arrived, null, patience);
   const { markers } = await head(page);
   const revision = await page.evaluate(() => window.pliant.scene.value.head.revision);
   await page.getByTestId('tab-file').click();
@@ -271,7 +271,7 @@ test('the program stops at its end, and a change of material keeps the robot at 
   await modulus.fill(String(1.001 * Number(await modulus.inputValue())));
   await modulus.press('Enter');
   await page.waitForFunction((r) => window.pliant.scene.value?.head.revision > r, revision, patience);
-  await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.time - 0.97) < 1e-9 && window.pliant.frame.value.head.arrived, null, patience);
+  await page.waitForFunction(() => Math.abs(window.pliant.frame.value?.head.time - 0.97) < 1e-9 && window.pliant.frame.value?.head.arrived, null, patience);
   await says(program, '97 %');
   const after = (await head(page)).markers;
   // Bent by the length of its cable it hardly moves with a modulus that is a thousandth higher.
@@ -329,7 +329,7 @@ test('a residual over many decades has grid lines that do not merge', async (t) 
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('play').click();
-  await page.waitForFunction(() => window.pliant.frame.value.head.time > 0.5, null, patience);
+  await page.waitForFunction(() => window.pliant.frame.value?.head.time > 0.5, null, patience);
   await page.getByTestId('tab-plots').click();
   await page.waitForTimeout(500);
   // The share of ink in a column, in the median of many: some of them lie on a line of the grid themselves.
