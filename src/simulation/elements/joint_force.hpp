@@ -9,8 +9,9 @@
 //   glue     E = k/2 sum |d|^2                            three points that are not collinear
 //   slider   E = k/2 (sum |d|^2 - n q^2) + U(q)           the same; q = t . mean of d, t the axis fixed to the first
 //
-// The slider's is k/2 min over s of sum |d - s t|^2. The angle is atan2(v . w, u . w) with u, v fixed to the first and
-// w to the second, normal to the axis.
+// The slider's is k/2 min over s of sum |d - s t|^2. The angle is atan2(v . w - u . z, u . w + v . z) with u, v fixed
+// to the first and w, z to the second, normal to the axis: the turn that brings u, v nearest to w, z. It does not
+// depend on which pair of directions normal to the axis is taken, also where soft material shears them.
 #pragma once
 
 #include <Eigen/Core>
