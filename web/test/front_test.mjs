@@ -89,7 +89,10 @@ test('the job is shown in 3D quickly, and can be cut at any layer; layers count 
   await page.getByTestId('estimate').waitFor();
   await page.getByTestId('option-layer').fill('400');
   await page.getByTestId('slice').click();
-  await page.getByTestId('layer-view').waitFor();
+  // While a job is sliced, its newest layer is shown.
+  await page.waitForFunction(() => window.pliant.job.value?.manifest.layers.length === 30, undefined, { timeout: 60_000 });
+  await page.waitForSelector('[data-testid=under-way]', { state: 'detached' });
+  await page.getByTestId('layer').fill('1');
   assert.match(await page.locator('.layer-info').textContent(), /layer 1 of 30/);
   const begin = Date.now();
   await page.getByTestId('make-stack').click();
