@@ -195,6 +195,12 @@ Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::
     return drawing;
 }
 
+bool has_body_of(const Drawing& drawing, const std::string& material) {
+    return std::ranges::any_of(drawing.bodies, [&](const slice::Body& body) {
+        return body.material == material || (body.blend && body.blend->second == material);
+    });
+}
+
 Status set_resins(const std::vector<std::string>& choices, Drawing& drawing) {
     std::map<std::string, std::string> given;
     for (const std::string& choice : choices) {

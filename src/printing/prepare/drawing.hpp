@@ -43,6 +43,9 @@ struct Drawing {
 /// The bodies of a robot. Errors: those of its geometry.
 [[nodiscard]] Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress);
 
+/// True if a body is of this material, or graded into it.
+[[nodiscard]] bool has_body_of(const Drawing& drawing, const std::string& material);
+
 /// MATERIAL=RESIN: sets the resin of a material, and of those made of it that are not named. Errors: no such material.
 [[nodiscard]] Status set_resins(const std::vector<std::string>& choices, Drawing& drawing);
 

@@ -19,21 +19,16 @@ Status check_slow(const Order& order) {
     if (!order.hollow.empty()) {
         if (const auto hollow = hollow_settings(order); !hollow) return tl::unexpected(hollow.error());
     }
-    for (const auto& [option, text] : {std::pair{"--drain", &order.drain}, {"--least-layer", &order.least_layer}}) {
-        if (const auto length = length_um(option, *text, 0); !length) return tl::unexpected(length.error());
-    }
+    const Result<double> least = length_um("--least-layer", order.least_layer, 0);
+    if (!least) return tl::unexpected(least.error());
     return check_supports(order);
 }
 
 /// Removes what an estimate does not include, and the material that would be printed in supports alone.
 void leave_out_slow(const Drawing& drawing, Order& order, job::JobSettings& settings) {
-    const auto printed = [&](const job::Material& material) {
-        return std::ranges::any_of(drawing.bodies, [&](const slice::Body& body) {
-            return body.material == material.name || (body.blend && body.blend->second == material.name);
-        });
-    };
-    std::erase_if(settings.materials,
-                  [&](const job::Material& material) { return material.name == order.support && !printed(material); });
+    std::erase_if(settings.materials, [&](const job::Material& material) {
+        return material.name == order.support && !has_body_of(drawing, material.name);
+    });
     for (std::string* text :
          {&order.support, &order.support_angle, &order.support_spacing, &order.support_tip, &order.support_pillar,
           &order.support_paint, &order.lift, &order.raft, &order.hollow, &order.drain, &order.least_layer})

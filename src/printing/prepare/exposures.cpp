@@ -241,10 +241,7 @@ Status set_exposures(const Order& order, const machine::Printer& printer, job::J
 Status check_limits(const Drawing& drawing, const std::vector<job::Material>& materials,
                     const machine::Printer& printer) {
     for (const job::Material& m : materials) {
-        const auto printed = [&](const slice::Body& body) {
-            return body.material == m.name || (body.blend && body.blend->second == m.name);
-        };
-        if (!drawing.exposure_of_material.contains(m.name) || std::ranges::none_of(drawing.bodies, printed)) continue;
+        if (!drawing.exposure_of_material.contains(m.name) || !has_body_of(drawing, m.name)) continue;
         const double most_s = std::max(m.exposure_s, m.bottom_exposure_s);
         if (most_s > printer.limits.exposure_s)
             return input_error("material \"{}\": exposure of {:g} s, the limit of {} is {:g} s", m.name, most_s,

@@ -33,15 +33,11 @@ Result<Pair> read_pair(const char* option, const std::string& text, int default_
 
 /// The materials of bodies that a pair means by a name: that one, and those made of it for exposures of their own.
 std::vector<std::string> meant_by(const std::string& name, const Order& order, const Drawing& drawing) {
-    const auto is_made_of = [&](const slice::Body& b) {
-        return b.material == name || (b.blend && b.blend->second == name);
-    };
     std::vector<std::string> names;
     for (const auto& [own, whole] : drawing.made_of) {
         if (whole == name) names.push_back(own);
     }
-    if (names.empty() || name == order.support || std::any_of(drawing.bodies.begin(), drawing.bodies.end(), is_made_of))
-        names.insert(names.begin(), name);
+    if (names.empty() || name == order.support || has_body_of(drawing, name)) names.insert(names.begin(), name);
     return names;
 }
 

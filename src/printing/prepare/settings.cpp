@@ -37,13 +37,8 @@ Status check_resins(const Drawing& drawing, const std::vector<job::Material>& ma
                     const machine::Printer& printer) {
     std::vector<job::Material> used;
     for (const job::Material& m : materials) {
-        const auto is_made_of = [&](const slice::Body& b) {
-            return b.material == m.name || (b.blend && b.blend->second == m.name);
-        };
         const auto shows = [&](const job::MaterialStack& s) { return s.material == m.name; };
-        if (std::any_of(drawing.bodies.begin(), drawing.bodies.end(), is_made_of) ||
-            std::any_of(drawing.stacks.begin(), drawing.stacks.end(), shows))
-            used.push_back(m);
+        if (has_body_of(drawing, m.name) || std::ranges::any_of(drawing.stacks, shows)) used.push_back(m);
     }
     return plan::check_resins(used, printer);
 }
