@@ -149,6 +149,7 @@ test('a second print on the same machine begins with an empty platform; the part
   await page.getByTestId('view-part').click();
   await start(page);
   await shown(page, () => !document.querySelector('[data-testid=part]') || Number(document.querySelector('[data-testid=part]').dataset.height) < 1);
+  await shown(page, () => !(Number(document.querySelector('[data-testid=print-layer]').textContent) > 4)); // no longer the last of the first print
   await beyond(page, 4);
   await page.getByTestId('pause').click();
   await page.getByTestId('resume').waitFor();

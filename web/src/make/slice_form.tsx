@@ -225,7 +225,19 @@ function Placement() {
     <Group name="Placement and copies" options={['turn', 'scale', 'at', 'copies', 'spacing']} given={copies.value !== 1 || scale.value !== 1 || shift.value.some((v) => v !== 0) || turn.value.some((t) => t !== 0)}>
       <label>
         Copies
-        <input type="number" min={1} max={1000} step={1} value={copies.value} aria-invalid={wrong.value?.option === 'copies'} data-testid="option-copies" onChange={(e) => (copies.value = Number(e.currentTarget.value))} />
+        <input
+          type="number"
+          min={1}
+          max={1000}
+          step={1}
+          value={copies.value}
+          aria-invalid={wrong.value?.option === 'copies'}
+          data-testid="option-copies"
+          onChange={(e) => {
+            e.currentTarget.value ||= '1'; // an emptied field: as before anything was entered
+            copies.value = Number(e.currentTarget.value);
+          }}
+        />
       </label>
       <Problem option="copies" />
       <Field option="spacing" label="Spacing" hint="2" />

@@ -110,11 +110,11 @@ export class MachineView {
     this.draw();
   }
 
-  /// Repositions the camera whenever the part has outgrown the view.
+  /// Repositions the camera whenever the part has outgrown the view, or is much smaller than it.
   private lookAtPart() {
     const box = this.part.box.isEmpty() ? new THREE.Box3(new THREE.Vector3(-20, -20, -20), new THREE.Vector3(20, 20, 0)) : this.part.box.clone();
-    if (!this.seen.isEmpty() && this.seen.containsBox(box)) return;
     const size = box.getSize(new THREE.Vector3()).length();
+    if (this.seen.containsBox(box) && size > 0.35 * this.seen.getSize(new THREE.Vector3()).length()) return;
     this.seen = box.clone().expandByScalar(0.25 * size);
     const centre = box.getCenter(new THREE.Vector3()).add(new THREE.Vector3(0, 0, this.platform.position.z));
     this.controls.target.copy(centre);

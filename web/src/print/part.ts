@@ -70,8 +70,11 @@ async function fetchPart() {
     try {
       const known = part.value;
       const answer = await api(`/api/print/part?revision=${known?.revision ?? -1}&from=${known ? closed : 0}`);
-      if (answer.status === 204) part.value = null; // no machine
-      else take(await answer.arrayBuffer());
+      const bytes = answer.status === 204 ? null : await answer.arrayBuffer(); // 204: no machine
+      // An increment of a part that has been cleared meanwhile would be a part without its first slabs.
+      if (part.value !== known) stale = true;
+      else if (!bytes) part.value = null;
+      else take(bytes);
     } catch {
       part.value = null; // no studio: requested again after the next event
     }
