@@ -21,25 +21,40 @@ struct RowOf {
     std::array<double, 4> first, second;
 };
 
+/// Distance of the second thing from the first at the point that lies by these parts of each arm from the centre.
+RowOf offset_at(const std::array<double, 3>& arms) {
+    RowOf row{{-1, 0, 0, 0}, {1, 0, 0, 0}};
+    for (std::size_t k = 0; k < 3; ++k) {
+        row.first[0] += arms[k], row.first[k + 1] -= arms[k];
+        row.second[0] -= arms[k], row.second[k + 1] += arms[k];
+    }
+    return row;
+}
+
+/// Distances at the corners of a regular tetrahedron. Their mean is that of the centre, and the sum of their squares
+/// does not depend on how the tetrahedron lies, also where the things deform.
+std::vector<RowOf> corner_offsets() {
+    const double c = 1 / std::numbers::sqrt3;
+    return {offset_at({c, c, c}), offset_at({c, -c, -c}), offset_at({-c, c, -c}), offset_at({-c, -c, c})};
+}
+
 std::vector<RowOf> rows_of(Joint::Kind kind, double arm) {
     const double a = 1 / arm;
-    const RowOf centre{{-1, 0, 0, 0}, {1, 0, 0, 0}}, along{{0, -1, 0, 0}, {0, 1, 0, 0}};
     switch (kind) {
         case Joint::Kind::ball:
-            return {centre};
+            return {offset_at({0, 0, 0})};
         case Joint::Kind::glue:
-            return {centre, along, {{0, 0, -1, 0}, {0, 0, 1, 0}}};
-        case Joint::Kind::slider:
-            return {centre, along, {{0, 0, -1, 0}, {0, 0, 1, 0}}, {{-a, a, 0, 0}, {0, 0, 0, 0}}};
+            return corner_offsets();
+        case Joint::Kind::slider: {
+            std::vector<RowOf> rows = corner_offsets();
+            rows.push_back({{-a, a, 0, 0}, {0, 0, 0, 0}});
+            return rows;
+        }
         case Joint::Kind::hinge:
             break;
     }
-    return {along,
-            {{-2, 1, 0, 0}, {2, -1, 0, 0}},
-            {{-a, 0, a, 0}, {0, 0, 0, 0}},
-            {{-a, 0, 0, a}, {0, 0, 0, 0}},
-            {{0, 0, 0, 0}, {-a, 0, a, 0}},
-            {{0, 0, 0, 0}, {-a, 0, 0, a}}};
+    return {{{0, -1, 0, 0}, {0, 1, 0, 0}}, {{-2, 1, 0, 0}, {2, -1, 0, 0}}, {{-a, 0, a, 0}, {0, 0, 0, 0}},
+            {{-a, 0, 0, a}, {0, 0, 0, 0}}, {{0, 0, 0, 0}, {-a, 0, a, 0}},  {{0, 0, 0, 0}, {-a, 0, 0, a}}};
 }
 
 Eigen::Index place_in(std::vector<int>& nodes, int node) {
@@ -102,7 +117,7 @@ Eigen::Index JointForce::points() const {
         case Joint::Kind::slider:
             break;
     }
-    return 3;
+    return 4;
 }
 
 JointForce::Vectors JointForce::vectors(std::span<const double> x) const {
@@ -135,21 +150,22 @@ JointForce::Coordinate JointForce::angle_of(const Vectors& y, bool with_hessian)
 }
 
 JointForce::Coordinate JointForce::place_of(const Vectors& y, bool with_hessian) const {
-    const double length = y.col(3).norm();
-    const Vector3 t = y.col(3) / length, d = y.leftCols<3>().rowwise().mean();
+    constexpr Eigen::Index n = 4;  // offsets, before the axis
+    const double length = y.col(n).norm();
+    const Vector3 t = y.col(n) / length, d = y.leftCols<n>().rowwise().mean();
     const double s = t.dot(d);
     const Vector3 off = d - s * t;
-    Coordinate q{s, Vectors::Zero(3, 4), {}};
-    for (Eigen::Index k = 0; k < 3; ++k) q.gradient.col(k) = t / 3;
-    q.gradient.col(3) = off / length;
+    Coordinate q{s, Vectors::Zero(3, n + 1), {}};
+    for (Eigen::Index k = 0; k < n; ++k) q.gradient.col(k) = t / n;
+    q.gradient.col(n) = off / length;
     if (!with_hessian) return q;
     const Matrix3 across = Matrix3::Identity() - t * t.transpose();
-    q.hessian = Eigen::MatrixXd::Zero(12, 12);
-    for (Eigen::Index k = 0; k < 3; ++k) {
-        q.hessian.block<3, 3>(3 * k, 9) = across / (3 * length);
-        q.hessian.block<3, 3>(9, 3 * k) = across / (3 * length);
+    q.hessian = Eigen::MatrixXd::Zero(3 * (n + 1), 3 * (n + 1));
+    for (Eigen::Index k = 0; k < n; ++k) {
+        q.hessian.block<3, 3>(3 * k, 3 * n) = across / (n * length);
+        q.hessian.block<3, 3>(3 * n, 3 * k) = across / (n * length);
     }
-    q.hessian.block<3, 3>(9, 9) = -(off * t.transpose() + t * off.transpose() + s * across) / (length * length);
+    q.hessian.block<3, 3>(3 * n, 3 * n) = -(off * t.transpose() + t * off.transpose() + s * across) / (length * length);
     return q;
 }
 
@@ -285,8 +301,7 @@ JointForce::Load JointForce::load(std::span<const double> x, const JointDrive& d
 }
 
 Vector3 JointForce::gap(std::span<const double> x) const {
-    const Vectors y = vectors(x);
-    return kind_ == Joint::Kind::hinge ? Vector3(0.5 * (y.col(0) + y.col(1))) : Vector3(y.col(0));
+    return vectors(x).leftCols(points()).rowwise().mean();
 }
 
 }  // namespace pliant::sim

@@ -6,7 +6,7 @@
 //
 //   ball     E = k/2 |d|^2                                one point
 //   hinge    E = k/2 sum |d|^2 + U(q)                     two points of the axis; q the angle about it
-//   glue     E = k/2 sum |d|^2                            three points that are not collinear
+//   glue     E = k/2 sum |d|^2                            four points, the corners of a regular tetrahedron
 //   slider   E = k/2 (sum |d|^2 - n q^2) + U(q)           the same; q = t . mean of d, t the axis fixed to the first
 //
 // The slider's is k/2 min over s of sum |d - s t|^2. The angle is atan2(v . w - u . z, u . w + v . z) with u, v fixed

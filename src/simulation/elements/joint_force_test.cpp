@@ -123,28 +123,44 @@ TEST_CASE("a rigid motion of both ends causes no joint force") {
     }
 }
 
-TEST_CASE("a hinge does not depend on the pair of directions that its angle is taken from") {
-    // On nodes that deform, as those of soft material: the pair is turned about the axis of both things.
-    const Joint joint = some_joint(Joint::Kind::hinge, false);
+namespace {
+
+/// The joint with other arms: column k of `turn` has the parts of the given ones in arm k.
+Joint with_arms(const Joint& joint, const Eigen::Matrix3d& turn) {
     Joint turned = joint;
-    const double c = std::cos(0.7), s = std::sin(0.7);
     for (auto* end : {&turned.first, &turned.second}) {
-        const auto points = *end;
-        const auto mix = [&](std::size_t to, double by_second, double by_third) {
-            for (std::size_t k = 0; k < 4; ++k)
-                (*end)[to].weights[k] = (1 - by_second - by_third) * points[0].weights[k] +
-                                        by_second * points[2].weights[k] + by_third * points[3].weights[k];
-        };
-        mix(2, c, s);
-        mix(3, -s, c);
+        const std::array<Attachment, 4> points = *end;
+        for (int arm = 0; arm < 3; ++arm) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                double& weight = (*end)[static_cast<std::size_t>(arm) + 1].weights[k];
+                weight = points[0].weights[k];
+                for (int by = 0; by < 3; ++by)
+                    weight +=
+                        turn(by, arm) * (points[static_cast<std::size_t>(by) + 1].weights[k] - points[0].weights[k]);
+            }
+        }
     }
-    const JointForce force(joint), other(turned);
-    const JointDrive drive{0.3, 0.1, 0.05};
-    for (unsigned seed = 1; seed < 6; ++seed) {
-        const Eigen::VectorXd x = some_place(seed);
-        CHECK(other.coordinate(linalg::view(x), 0.1) ==
-              near(force.coordinate(linalg::view(x), 0.1), {.absolute = 1e-12}));
-        CHECK((gradient(other, x, drive) - gradient(force, x, drive)).norm() < 1e-10);
+    return turned;
+}
+
+}  // namespace
+
+TEST_CASE("a joint does not depend on the directions that its arms are given in") {
+    // On nodes that deform, as those of soft material. A hinge and a slider keep their axis.
+    const Eigen::Matrix3d about_axis = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).matrix();
+    const Eigen::Matrix3d any = Eigen::AngleAxisd(1.1, Eigen::Vector3d(0.3, -0.5, 0.8).normalized()).matrix();
+    for (const Joint::Kind kind : kinds) {
+        CAPTURE(static_cast<int>(kind));
+        const Joint joint = some_joint(kind, false);
+        const JointForce force(joint);
+        const JointForce other(with_arms(joint, force.has_coordinate() ? about_axis : any));
+        const JointDrive drive{0.3, 0.1, 0.05};
+        for (unsigned seed = 1; seed < 6; ++seed) {
+            const Eigen::VectorXd x = some_place(seed);
+            CHECK(other.coordinate(linalg::view(x), 0.1) ==
+                  near(force.coordinate(linalg::view(x), 0.1), {.absolute = 1e-12}));
+            CHECK((gradient(other, x, drive) - gradient(force, x, drive)).norm() < 1e-10);
+        }
     }
 }
 

@@ -190,13 +190,22 @@ std::array<Vec3, 3> arms(const JointSpec& spec, const std::array<End, 2>& ends) 
     return {first, second, cross(first, second)};
 }
 
-/// A hinge takes its angle on a flat plate from the direction in the plate alone, which is rigid: the third arm is off
-/// the plate, where only the soft material beside it would resist the torque.
-void take_angle_in_plate(const std::array<End, 2>& ends, const Vec3& axis, sim::Joint& joint) {
+/// On a flat plate, which alone is rigid, the third arm is off the plate, where only the soft material beside it would
+/// resist a torque. A hinge takes its angle there from the direction in the plate alone; glue and sliders do without
+/// that arm.
+void leave_out_arm_off_plate(const std::array<End, 2>& ends, const Vec3& axis, sim::Joint& joint) {
     const bool first = has_direction(ends[0], axis), second = has_direction(ends[1], axis);
-    if (joint.kind != sim::Joint::Kind::hinge || first == second) return;
-    std::array<sim::Attachment, 4>& points = first ? joint.first : joint.second;
-    points[3] = points[0];
+    switch (joint.kind) {
+        case sim::Joint::Kind::hinge:
+            if (first != second) (first ? joint.first : joint.second)[3] = (first ? joint.first : joint.second)[0];
+            return;
+        case sim::Joint::Kind::glue:
+        case sim::Joint::Kind::slider:
+            if (first || second) joint.first[3] = joint.first[0], joint.second[3] = joint.second[0];
+            return;
+        case sim::Joint::Kind::ball:
+            return;
+    }
 }
 
 double stiffness(const sim::Description& d, double arm_m) {
@@ -272,7 +281,7 @@ void add_joint(ModelDraft& draft, const JointSpec& spec) {
         joint.first[p] = ends[0].patch.at(place);
         joint.second[p] = ends[1].patch.at(place);
     }
-    take_angle_in_plate(ends, directions[0], joint);
+    leave_out_arm_off_plate(ends, directions[0], joint);
     joint.stiffness_N_m = stiffness(draft.description, joint.arm_m);
     joint.law = law_of(spec);
     joint.objects = {ends[0].object, ends[1].object};
