@@ -174,6 +174,9 @@ for (const [theme, width] of [['light', 1440], ['dark', 390]]) {
     await see('simulate');
     await page.getByTestId('field').selectOption({ label: 'Von Mises stress' });
     await page.getByTestId('fine').click();
+    await page.waitForFunction(() => window.pliant.documentState.value.accuracy === 'fine');
+    await page.waitForTimeout(500);
+    await settled(page); // the curve's first state
     await page.getByTestId('number-flexor').fill('0.85');
     await page.keyboard.press('Enter');
     await page.waitForTimeout(500);
