@@ -195,17 +195,10 @@ std::array<Vec3, 3> arms(const JointSpec& spec, const std::array<End, 2>& ends) 
 /// that arm.
 void leave_out_arm_off_plate(const std::array<End, 2>& ends, const Vec3& axis, sim::Joint& joint) {
     const bool first = has_direction(ends[0], axis), second = has_direction(ends[1], axis);
-    switch (joint.kind) {
-        case sim::Joint::Kind::hinge:
-            if (first != second) (first ? joint.first : joint.second)[3] = (first ? joint.first : joint.second)[0];
-            return;
-        case sim::Joint::Kind::glue:
-        case sim::Joint::Kind::slider:
-            if (first || second) joint.first[3] = joint.first[0], joint.second[3] = joint.second[0];
-            return;
-        case sim::Joint::Kind::ball:
-            return;
-    }
+    const bool at_both = joint.kind != sim::Joint::Kind::hinge;  // distances need the arm on both things
+    if (!at_both && first == second) return;
+    if (first || (at_both && second)) joint.first[3] = joint.first[0];
+    if (second || (at_both && first)) joint.second[3] = joint.second[0];
 }
 
 double stiffness(const sim::Description& d, double arm_m) {

@@ -448,7 +448,8 @@ TEST_CASE("a joint on a soft beam, or on its rigid end, gives the same answer ho
             CAPTURE(kind);
             CAPTURE(first);
             const sim::Step plain = solved(false, kind, first), turned = solved(true, kind, first);
-            if (kind != std::string_view("glue")) CHECK(std::fabs(plain.joints[0].coordinate) > 1e-3);
+            if (kind == std::string_view("hinge")) CHECK(plain.joints[0].coordinate > 0.01);
+            if (kind == std::string_view("slider")) CHECK(plain.joints[0].coordinate < -1e-3);
             CHECK(turned.joints[0].coordinate == near(plain.joints[0].coordinate, {.relative = 1e-5}));
             const Vec3 there = turned.markers[0].position_m, back{there.y, there.z, there.x};
             CHECK(norm(back - plain.markers[0].position_m) < 1e-8);
